@@ -1,0 +1,205 @@
+!> Tables in the result file: a group of equally long columns (time, U1, ...), one dataset each.
+!>
+!> Rows are gathered in memory and written in blocks, so that appending one costs next to nothing.
+!> `flush` writes what is left; it must be called before the file is flushed or closed. A row
+!> holds the values of the real columns, then of the integer and of the text columns, each in the
+!> order in which the columns were added.
+module column_table
+   use errors, only: error_type, new_error, status_internal
+   use hdf5_file, only: hdf5_file_type, series_integer, series_real
+   use kinds, only: wp
+   use text, only: to_text
+   implicit none
+   private
+
+   public :: column_table_type
+
+   integer, parameter :: text_length = 80      ! the longest name of a deck
+   integer, parameter :: chunk_rows = 512      ! 4 KiB a chunk of reals
+   integer, parameter :: most_rows = 4096      ! rows gathered before they are written
+   integer, parameter :: most_values = 2**21   ! 16 MiB of reals gathered at most
+
+   !> The columns of one kind, by their paths in the file.
+   type :: columns_type
+      integer :: n = 0
+      character(len=256), allocatable :: paths(:)
+   end type columns_type
+
+   !> A group of columns that grow together.
+   type :: column_table_type
+      private
+      character(len=:), allocatable :: group
+      type(columns_type) :: reals, integers, texts
+      integer :: n_rows = 0     ! rows appended
+      integer :: n_held = 0     ! rows of them still in memory
+      logical :: started = .false.
+      real(wp), allocatable :: held_reals(:, :)                     ! (row, column)
+      integer, allocatable :: held_integers(:, :)                   ! (row, column)
+      character(len=text_length), allocatable :: held_texts(:, :)   ! (row, column)
+   contains
+      procedure :: create
+      procedure :: add_column
+      procedure :: add_integer_column
+      procedure :: add_text_column
+      procedure :: count_rows
+      procedure :: flush => flush_rows
+      generic :: append_row => append_reals, append_mixed
+      procedure, private :: append_reals, append_mixed
+   end type column_table_type
+
+contains
+
+   !> Makes the group of the table.
+   subroutine create(self, file, group, description, error)
+      class(column_table_type), intent(out) :: self
+      type(hdf5_file_type), intent(in) :: file
+      character(len=*), intent(in) :: group   !! '/energy', say
+      character(len=*), intent(in) :: description
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+
+      self%group = group
+      call file%create_group(group, description, error)
+   end subroutine create
+
+   !> Adds a column of reals; only before the first row.
+   subroutine add_column(self, file, path, description, error)
+      class(column_table_type), intent(inout) :: self
+      type(hdf5_file_type), intent(in) :: file
+      character(len=*), intent(in) :: path   !! in the group: 'time', 'node_5/U1'
+      character(len=*), intent(in) :: description
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+
+      call remember(self, self%reals, path, error)
+      if (allocated(error)) return
+      call file%create_series(self%group//'/'//path, series_real, 0, chunk_rows, description, error)
+   end subroutine add_column
+
+   !> Adds a column of integers; only before the first row.
+   subroutine add_integer_column(self, file, path, description, error)
+      class(column_table_type), intent(inout) :: self
+      type(hdf5_file_type), intent(in) :: file
+      character(len=*), intent(in) :: path, description
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+
+      call remember(self, self%integers, path, error)
+      if (allocated(error)) return
+      call file%create_series(self%group//'/'//path, series_integer, 0, chunk_rows, description, &
+            error)
+   end subroutine add_integer_column
+
+   !> Adds a column of texts of at most `length` (and 80) characters; only before the first row.
+   subroutine add_text_column(self, file, path, length, description, error)
+      class(column_table_type), intent(inout) :: self
+      type(hdf5_file_type), intent(in) :: file
+      character(len=*), intent(in) :: path, description
+      integer, intent(in) :: length
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+
+      call remember(self, self%texts, path, error)
+      if (allocated(error)) return
+      call file%create_text_series(self%group//'/'//path, length, chunk_rows, description, error)
+   end subroutine add_text_column
+
+   !> Rows appended so far, written or not.
+   pure integer function count_rows(self)
+      class(column_table_type), intent(in) :: self
+
+      count_rows = self%n_rows
+   end function count_rows
+
+   !> Appends a row to a table of reals.
+   subroutine append_reals(self, file, values, error)
+      class(column_table_type), intent(inout) :: self
+      type(hdf5_file_type), intent(in) :: file
+      real(wp), intent(in) :: values(:)
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+
+      call self%append_mixed(file, values, [integer ::], [character(len=1) ::], error)
+   end subroutine append_reals
+
+   !> Appends a row to a table of several kinds of columns.
+   subroutine append_mixed(self, file, values, integers, texts, error)
+      class(column_table_type), intent(inout) :: self
+      type(hdf5_file_type), intent(in) :: file
+      real(wp), intent(in) :: values(:)
+      integer, intent(in) :: integers(:)
+      character(len=*), intent(in) :: texts(:)
+      type(error_type), allocatable, intent(out) :: error   !! status_file; a row that does not fit
+
+      if (size(values) /= self%reals%n .or. size(integers) /= self%integers%n &
+            .or. size(texts) /= self%texts%n) then
+         call new_error(error, status_internal, 'a row of '//self%group//' has '// &
+               to_text(size(values))//', '//to_text(size(integers))//', '//to_text(size(texts))// &
+               ' reals, integers, texts instead of '//to_text(self%reals%n)//', '// &
+               to_text(self%integers%n)//', '//to_text(self%texts%n))
+         return
+      end if
+      if (.not. self%started) call start(self)
+      self%n_held = self%n_held + 1
+      self%n_rows = self%n_rows + 1
+      self%held_reals(self%n_held, :) = values
+      self%held_integers(self%n_held, :) = integers
+      self%held_texts(self%n_held, :) = texts
+      if (self%n_held == size(self%held_reals, 1)) call self%flush(file, error)
+   end subroutine append_mixed
+
+   !> Writes the rows held in memory, column by column.
+   subroutine flush_rows(self, file, error)
+      class(column_table_type), intent(inout) :: self
+      type(hdf5_file_type), intent(in) :: file
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+      integer :: column, n
+
+      n = self%n_held
+      if (n == 0) return
+      do column = 1, self%reals%n
+         call file%append(trim(self%reals%paths(column)), self%held_reals(:n, column), error)
+         if (allocated(error)) return
+      end do
+      do column = 1, self%integers%n
+         call file%append(trim(self%integers%paths(column)), self%held_integers(:n, column), error)
+         if (allocated(error)) return
+      end do
+      do column = 1, self%texts%n
+         call file%append(trim(self%texts%paths(column)), self%held_texts(:n, column), error)
+         if (allocated(error)) return
+      end do
+      self%n_held = 0
+   end subroutine flush_rows
+
+   !> Allocates the memory for the rows; the columns are fixed from here on.
+   subroutine start(self)
+      type(column_table_type), intent(inout) :: self
+      integer :: rows
+
+      rows = max(64, min(most_rows, most_values/max(1, self%reals%n)))
+      allocate (self%held_reals(rows, self%reals%n))
+      allocate (self%held_integers(rows, self%integers%n))
+      allocate (self%held_texts(rows, self%texts%n))
+      self%started = .true.
+   end subroutine start
+
+   !> Notes the path of a new column, in a list that doubles when it is full.
+   subroutine remember(self, columns, path, error)
+      class(column_table_type), intent(in) :: self
+      type(columns_type), intent(inout) :: columns
+      character(len=*), intent(in) :: path
+      type(error_type), allocatable, intent(out) :: error
+      character(len=256), allocatable :: longer(:)
+
+      if (self%started) then
+         call new_error(error, status_internal, 'column '//path//' comes after the first row '// &
+               'of '//self%group)
+         return
+      end if
+      if (.not. allocated(columns%paths)) allocate (columns%paths(8))
+      if (columns%n == size(columns%paths)) then
+         allocate (longer(2*columns%n))
+         longer(:columns%n) = columns%paths
+         call move_alloc(longer, columns%paths)
+      end if
+      columns%n = columns%n + 1
+      columns%paths(columns%n) = self%group//'/'//path
+   end subroutine remember
+
+end module column_table

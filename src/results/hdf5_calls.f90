@@ -1,0 +1,335 @@
+!> The calls to the HDF5 library, the only ones: datasets, attributes and growing datasets by path.
+!> hdf5_file and hdf5_reader give them types and error messages.
+module hdf5_calls
+   use, intrinsic :: iso_c_binding, only: c_char, c_ptr
+   use hdf5, only: h5_integer_kind, h5aclose_f, h5acreate_f, h5aexists_f, h5aopen_f, &
+         h5awrite_f, h5dclose_f, h5dcreate_f, h5dget_space_f, h5dont_atexit_f, h5dopen_f, &
+         h5dread_f, h5dset_extent_f, h5dwrite_f, h5eset_auto_f, h5f_acc_rdonly_f, &
+         h5f_acc_trunc_f, h5f_close_strong_f, h5f_scope_global_f, h5fclose_f, h5fcreate_f, &
+         h5fflush_f, h5fopen_f, h5gclose_f, h5gcreate_f, h5kind_to_type, h5oclose_f, h5oopen_f, &
+         h5open_f, h5p_dataset_create_f, h5p_file_access_f, h5p_link_create_f, h5pclose_f, &
+         h5pcreate_f, h5pset_chunk_f, h5pset_create_inter_group_f, h5pset_fclose_degree_f, &
+         h5s_scalar_f, h5s_select_set_f, h5s_unlimited_f, h5sclose_f, h5screate_f, &
+         h5screate_simple_f, h5sget_simple_extent_dims_f, h5sget_simple_extent_ndims_f, &
+         h5sselect_hyperslab_f, h5t_fortran_s1, h5t_ieee_f64le, h5t_native_double, &
+         h5t_native_integer, h5t_std_i64le, h5t_std_u8le, h5t_str_nullpad_f, h5tclose_f, &
+         h5tcopy_f, h5tset_size_f, h5tset_strpad_f, hid_t, hsize_t, size_t
+   use kinds, only: int64
+   implicit none
+   private
+
+   public :: hid_t, hsize_t, storage_type
+   public :: real_storage, integer_storage, long_storage, byte_storage, text_storage, close_storage
+   public :: create_file, open_file, flush_file, close_file, make_group
+   public :: put_dataset, put_attribute, make_series, append_block, get_dims, get_dataset
+
+   !> How one kind of value is stored and how it lies in memory.
+   type :: storage_type
+      integer(hid_t) :: in_file = -1
+      integer(hid_t) :: in_memory = -1
+   end type storage_type
+
+contains
+
+   function real_storage() result(storage)
+      type(storage_type) :: storage
+
+      storage%in_file = h5t_ieee_f64le
+      storage%in_memory = h5t_native_double
+   end function real_storage
+
+   function integer_storage() result(storage)
+      type(storage_type) :: storage
+
+      storage%in_file = h5t_std_i64le
+      storage%in_memory = h5t_native_integer
+   end function integer_storage
+
+   function long_storage() result(storage)
+      type(storage_type) :: storage
+
+      storage%in_file = h5t_std_i64le
+      storage%in_memory = h5kind_to_type(int64, h5_integer_kind)
+   end function long_storage
+
+   !> Default integers stored as unsigned 8 bit numbers.
+   function byte_storage() result(storage)
+      type(storage_type) :: storage
+
+      storage%in_file = h5t_std_u8le
+      storage%in_memory = h5t_native_integer
+   end function byte_storage
+
+   !> Texts of the given length, ASCII; `close_storage` gives its types back.
+   function text_storage(length) result(storage)
+      integer, intent(in) :: length
+      type(storage_type) :: storage
+      integer :: status
+
+      call h5tcopy_f(h5t_fortran_s1, storage%in_memory, status)
+      call h5tset_size_f(storage%in_memory, int(length, size_t), status)
+      call h5tcopy_f(storage%in_memory, storage%in_file, status)
+      call h5tset_strpad_f(storage%in_file, h5t_str_nullpad_f, status)
+   end function text_storage
+
+   subroutine close_storage(storage)
+      type(storage_type), intent(in) :: storage
+      integer :: status
+
+      call h5tclose_f(storage%in_file, status)
+      call h5tclose_f(storage%in_memory, status)
+   end subroutine close_storage
+
+   !> Starts the library with its error printing off, and without its clean-up at the end of the
+   !> program: after a disk that was full that ends in a segmentation fault (HDF5 1.10).
+   subroutine start_library(opened, silenced)
+      integer, intent(out) :: opened, silenced
+      integer :: ignored   ! fails when the library runs already
+
+      call h5dont_atexit_f(ignored)
+      call h5open_f(opened)
+      call h5eset_auto_f(0, silenced)
+   end subroutine start_library
+
+   !> Creates the file or replaces it.
+   subroutine create_file(path, file, failed)
+      character(len=*), intent(in) :: path
+      integer(hid_t), intent(out) :: file
+      logical, intent(out) :: failed
+      integer(hid_t) :: access
+      integer :: status(5)
+
+      file = -1
+      call start_library(status(1), status(2))
+      call h5pcreate_f(h5p_file_access_f, access, status(3))
+      call h5pset_fclose_degree_f(access, h5f_close_strong_f, status(4))
+      call h5fcreate_f(path, h5f_acc_trunc_f, file, status(5), access_prp=access)
+      failed = any(status < 0)
+      call h5pclose_f(access, status(1))
+   end subroutine create_file
+
+   !> Opens an existing file for reading.
+   subroutine open_file(path, file, failed)
+      character(len=*), intent(in) :: path
+      integer(hid_t), intent(out) :: file
+      logical, intent(out) :: failed
+      integer :: status(3)
+
+      file = -1
+      call start_library(status(1), status(2))
+      call h5fopen_f(path, h5f_acc_rdonly_f, file, status(3))
+      failed = any(status < 0)
+   end subroutine open_file
+
+   subroutine flush_file(file, failed)
+      integer(hid_t), intent(in) :: file
+      logical, intent(out) :: failed
+      integer :: status
+
+      call h5fflush_f(file, h5f_scope_global_f, status)
+      failed = status < 0
+   end subroutine flush_file
+
+   subroutine close_file(file, failed)
+      integer(hid_t), intent(in) :: file
+      logical, intent(out) :: failed
+      integer :: status
+
+      call h5fclose_f(file, status)
+      failed = status < 0
+   end subroutine close_file
+
+   subroutine make_group(file, path, failed)
+      integer(hid_t), intent(in) :: file
+      character(len=*), intent(in) :: path
+      logical, intent(out) :: failed
+      integer(hid_t) :: group, links
+      integer :: status(4)
+
+      call link_property(links, status(1))
+      call h5gcreate_f(file, path, group, status(2), lcpl_id=links)
+      call h5gclose_f(group, status(3))
+      call h5pclose_f(links, status(4))
+      failed = any(status < 0)
+   end subroutine make_group
+
+   !> Makes a dataset of fixed size and writes it.
+   subroutine put_dataset(file, path, storage, dims, address, failed)
+      integer(hid_t), intent(in) :: file
+      character(len=*), intent(in) :: path
+      type(storage_type), intent(in) :: storage
+      integer(hsize_t), intent(in) :: dims(:)   !! no dimension: a scalar
+      type(c_ptr), intent(in) :: address
+      logical, intent(out) :: failed
+      integer(hid_t) :: space, dataset, links
+      integer :: status(7)
+
+      status = 0
+      call make_space(dims, space, status(1))
+      call link_property(links, status(2))
+      call h5dcreate_f(file, path, storage%in_file, space, dataset, status(3), lcpl_id=links)
+      if (product(dims) > 0) call h5dwrite_f(dataset, storage%in_memory, address, status(4))
+      call h5dclose_f(dataset, status(5))
+      call h5pclose_f(links, status(6))
+      call h5sclose_f(space, status(7))
+      failed = any(status < 0)
+   end subroutine put_dataset
+
+   !> Makes an attribute, or rewrites one of the same type and shape.
+   subroutine put_attribute(file, object, name, storage, dims, address, failed)
+      integer(hid_t), intent(in) :: file
+      character(len=*), intent(in) :: object, name
+      type(storage_type), intent(in) :: storage
+      integer(hsize_t), intent(in) :: dims(:)   !! no dimension: a scalar
+      type(c_ptr), intent(in) :: address
+      logical, intent(out) :: failed
+      integer(hid_t) :: owner, space, attribute
+      integer :: status(8)
+      logical :: exists
+
+      call h5oopen_f(file, object, owner, status(1))
+      failed = status(1) < 0
+      if (failed) return
+      status = 0
+      call h5aexists_f(owner, name, exists, status(2))
+      if (exists) then
+         call h5aopen_f(owner, name, attribute, status(3))
+      else
+         call make_space(dims, space, status(4))
+         call h5acreate_f(owner, name, storage%in_file, space, attribute, status(3))
+         call h5sclose_f(space, status(5))
+      end if
+      call h5awrite_f(attribute, storage%in_memory, address, status(6))
+      call h5aclose_f(attribute, status(7))
+      call h5oclose_f(owner, status(8))
+      failed = any(status < 0)
+   end subroutine put_attribute
+
+   !> Makes an empty dataset that grows along its last dimension.
+   subroutine make_series(file, path, storage, n_components, chunk_rows, failed)
+      integer(hid_t), intent(in) :: file
+      character(len=*), intent(in) :: path
+      type(storage_type), intent(in) :: storage
+      integer, intent(in) :: n_components   !! 0: a list; n: rows of n values
+      integer, intent(in) :: chunk_rows
+      logical, intent(out) :: failed
+      integer(hsize_t), allocatable :: dims(:), most(:), chunk(:)
+      integer(hid_t) :: space, dataset, properties, links
+      integer :: status(9)
+
+      dims = [0_hsize_t]
+      if (n_components > 0) dims = [int(n_components, hsize_t), 0_hsize_t]
+      most = dims
+      chunk = dims
+      most(size(dims)) = h5s_unlimited_f
+      chunk(size(dims)) = int(chunk_rows, hsize_t)
+      call h5screate_simple_f(size(dims), dims, space, status(1), maxdims=most)
+      call h5pcreate_f(h5p_dataset_create_f, properties, status(2))
+      call h5pset_chunk_f(properties, size(chunk), chunk, status(3))
+      call link_property(links, status(4))
+      call h5dcreate_f(file, path, storage%in_file, space, dataset, status(5), &
+            dcpl_id=properties, lcpl_id=links)
+      call h5dclose_f(dataset, status(6))
+      call h5pclose_f(links, status(7))
+      call h5pclose_f(properties, status(8))
+      call h5sclose_f(space, status(9))
+      failed = any(status < 0)
+   end subroutine make_series
+
+   !> Extends a series by as many rows as the values make up and writes them there.
+   subroutine append_block(file, path, storage, n_values, address, failed)
+      integer(hid_t), intent(in) :: file
+      character(len=*), intent(in) :: path
+      type(storage_type), intent(in) :: storage
+      integer, intent(in) :: n_values   !! a whole number of rows
+      type(c_ptr), intent(in) :: address
+      logical, intent(out) :: failed
+      integer(hid_t) :: dataset, space, block
+      integer(hsize_t), allocatable :: dims(:), start(:), count(:)
+      integer :: status(9), rank
+
+      call get_dims(file, path, dims, failed)
+      if (failed .or. n_values == 0) return
+      rank = size(dims)
+      allocate (start(rank), source=0_hsize_t)
+      start(rank) = dims(rank)
+      count = dims
+      count(rank) = n_values/product(dims(:rank - 1))
+      dims(rank) = start(rank) + count(rank)
+      call h5dopen_f(file, path, dataset, status(1))
+      call h5dset_extent_f(dataset, dims, status(2))
+      call h5dget_space_f(dataset, space, status(3))
+      call h5sselect_hyperslab_f(space, h5s_select_set_f, start, count, status(4))
+      call h5screate_simple_f(rank, count, block, status(5))
+      call h5dwrite_f(dataset, storage%in_memory, address, status(6), mem_space_id=block, &
+            file_space_id=space)
+      call h5sclose_f(block, status(7))
+      call h5sclose_f(space, status(8))
+      call h5dclose_f(dataset, status(9))
+      failed = any(status < 0)
+   end subroutine append_block
+
+   !> The shape of a dataset as Fortran sees it: rows last; none for a scalar.
+   subroutine get_dims(file, path, dims, failed)
+      integer(hid_t), intent(in) :: file
+      character(len=*), intent(in) :: path
+      integer(hsize_t), allocatable, intent(out) :: dims(:)
+      logical, intent(out) :: failed
+      integer(hsize_t), allocatable :: most(:)
+      integer(hid_t) :: dataset, space
+      integer :: status(6), rank
+
+      status = 0
+      call h5dopen_f(file, path, dataset, status(1))
+      failed = status(1) < 0
+      if (failed) return
+      call h5dget_space_f(dataset, space, status(2))
+      call h5sget_simple_extent_ndims_f(space, rank, status(3))
+      allocate (dims(max(0, rank)), most(max(0, rank)))
+      if (rank > 0) call h5sget_simple_extent_dims_f(space, dims, most, status(4))
+      call h5sclose_f(space, status(5))
+      call h5dclose_f(dataset, status(6))
+      failed = any(status < 0)
+   end subroutine get_dims
+
+   !> Reads a whole dataset; the memory must hold it.
+   subroutine get_dataset(file, path, storage, address, failed)
+      integer(hid_t), intent(in) :: file
+      character(len=*), intent(in) :: path
+      type(storage_type), intent(in) :: storage
+      type(c_ptr), intent(in) :: address
+      logical, intent(out) :: failed
+      type(c_ptr) :: memory
+      integer(hid_t) :: dataset
+      integer :: status(3)
+
+      memory = address
+      call h5dopen_f(file, path, dataset, status(1))
+      call h5dread_f(dataset, storage%in_memory, memory, status(2))
+      call h5dclose_f(dataset, status(3))
+      failed = any(status < 0)
+   end subroutine get_dataset
+
+   !> A scalar space for no dimensions, a simple one otherwise.
+   subroutine make_space(dims, space, status)
+      integer(hsize_t), intent(in) :: dims(:)
+      integer(hid_t), intent(out) :: space
+      integer, intent(out) :: status
+
+      if (size(dims) == 0) then
+         call h5screate_f(h5s_scalar_f, space, status)
+      else
+         call h5screate_simple_f(size(dims), dims, space, status)
+      end if
+   end subroutine make_space
+
+   !> The property that makes missing groups on the way to a new object.
+   subroutine link_property(links, status)
+      integer(hid_t), intent(out) :: links
+      integer, intent(out) :: status
+
+      call h5pcreate_f(h5p_link_create_f, links, status)
+      call h5pset_create_inter_group_f(links, 1, status)
+   end subroutine link_property
+
+end module hdf5_calls

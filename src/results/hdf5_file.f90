@@ -1,0 +1,385 @@
+!> An HDF5 file open for writing: datasets, attributes and growing datasets ("series") by path.
+!>
+!> Missing groups on the way to a new dataset are made. Integers are stored with 64 bits, reals in
+!> double precision. An array of shape (3, n) appears as n x 3 in the file. Every failure (no
+!> permission, disk full, ...) comes back as an error of status_file that names the file.
+module hdf5_file
+   use, intrinsic :: iso_c_binding, only: c_char, c_loc, c_ptr
+   use errors, only: error_type, new_error, status_file
+   use hdf5_calls, only: append_block, byte_storage, close_file, close_storage, create_file, &
+         flush_file, hid_t, hsize_t, integer_storage, long_storage, make_group, make_series, &
+         put_attribute, put_dataset, real_storage, storage_type, text_storage
+   use kinds, only: int64, wp
+   implicit none
+   private
+
+   public :: hdf5_file_type, series_real, series_integer
+
+   !> What a series of numbers holds.
+   integer, parameter :: series_real = 1
+   integer, parameter :: series_integer = 2
+
+   !> A file open for writing. It must be closed: nothing closes it by itself.
+   type :: hdf5_file_type
+      private
+      integer(hid_t) :: id = -1
+      character(len=:), allocatable :: path
+   contains
+      procedure :: create
+      procedure :: is_open
+      procedure :: flush => flush_to_disk
+      procedure :: close => close_for_good
+      procedure :: create_group
+      procedure :: write_bytes
+      procedure :: create_series
+      procedure :: create_text_series
+      generic :: write_dataset => write_reals, write_real_table, write_integers, write_text, &
+            write_texts
+      generic :: set_attribute => set_integer, set_integers, set_real, set_text
+      generic :: append => append_reals, append_real_table, append_integers, append_longs, &
+            append_texts
+      procedure, private :: write_reals, write_real_table, write_integers, write_text, write_texts
+      procedure, private :: set_integer, set_integers, set_real, set_text
+      procedure, private :: append_reals, append_real_table, append_integers, append_longs
+      procedure, private :: append_texts
+   end type hdf5_file_type
+
+contains
+
+   !> Creates the file; one that exists is replaced.
+   subroutine create(self, path, error)
+      class(hdf5_file_type), intent(out) :: self
+      character(len=*), intent(in) :: path
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+      logical :: failed
+
+      self%path = path
+      call create_file(path, self%id, failed)
+      if (.not. failed) return
+      self%id = -1
+      call new_error(error, status_file, "cannot create '"//path//"': "//reason(path))
+   end subroutine create
+
+   !> Whether the file was created and not yet closed.
+   pure logical function is_open(self)
+      class(hdf5_file_type), intent(in) :: self
+
+      is_open = self%id >= 0
+   end function is_open
+
+   !> Hands everything written so far to the operating system.
+   subroutine flush_to_disk(self, error)
+      class(hdf5_file_type), intent(in) :: self
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+      logical :: failed
+
+      call flush_file(self%id, failed)
+      if (failed) call write_error(self, 'everything', error)
+   end subroutine flush_to_disk
+
+   !> Closes the file; does nothing when it is not open.
+   subroutine close_for_good(self, error)
+      class(hdf5_file_type), intent(inout) :: self
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+      logical :: failed
+
+      if (.not. self%is_open()) return
+      call close_file(self%id, failed)
+      self%id = -1
+      if (failed) call write_error(self, 'everything', error)
+   end subroutine close_for_good
+
+   !> Makes a group; it must not exist yet.
+   subroutine create_group(self, path, description, error)
+      class(hdf5_file_type), intent(in) :: self
+      character(len=*), intent(in) :: path, description
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+      logical :: failed
+
+      call make_group(self%id, path, failed)
+      call describe(self, path, description, failed, error)
+   end subroutine create_group
+
+   subroutine write_reals(self, path, values, description, error)
+      class(hdf5_file_type), intent(in) :: self
+      character(len=*), intent(in) :: path, description
+      real(wp), intent(in), contiguous, target :: values(:)
+      type(error_type), allocatable, intent(out) :: error
+      logical :: failed
+
+      call put_dataset(self%id, path, real_storage(), shape(values, hsize_t), c_loc(values), failed)
+      call describe(self, path, description, failed, error)
+   end subroutine write_reals
+
+   subroutine write_real_table(self, path, values, description, error)
+      class(hdf5_file_type), intent(in) :: self
+      character(len=*), intent(in) :: path, description
+      real(wp), intent(in), contiguous, target :: values(:, :)
+      type(error_type), allocatable, intent(out) :: error
+      logical :: failed
+
+      call put_dataset(self%id, path, real_storage(), shape(values, hsize_t), c_loc(values), failed)
+      call describe(self, path, description, failed, error)
+   end subroutine write_real_table
+
+   subroutine write_integers(self, path, values, description, error)
+      class(hdf5_file_type), intent(in) :: self
+      character(len=*), intent(in) :: path, description
+      integer, intent(in), contiguous, target :: values(:)
+      type(error_type), allocatable, intent(out) :: error
+      logical :: failed
+
+      call put_dataset(self%id, path, integer_storage(), shape(values, hsize_t), c_loc(values), &
+            failed)
+      call describe(self, path, description, failed, error)
+   end subroutine write_integers
+
+   !> Integers 0 to 255, stored as unsigned 8 bit numbers.
+   subroutine write_bytes(self, path, values, description, error)
+      class(hdf5_file_type), intent(in) :: self
+      character(len=*), intent(in) :: path, description
+      integer, intent(in), contiguous, target :: values(:)
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+      logical :: failed
+
+      call put_dataset(self%id, path, byte_storage(), shape(values, hsize_t), c_loc(values), failed)
+      call describe(self, path, description, failed, error)
+   end subroutine write_bytes
+
+   !> One text as a scalar of exactly its length.
+   subroutine write_text(self, path, value, description, error)
+      class(hdf5_file_type), intent(in) :: self
+      character(len=*), intent(in) :: path, value, description
+      type(error_type), allocatable, intent(out) :: error
+      character(kind=c_char), allocatable, target :: bytes(:)
+      type(storage_type) :: storage
+      logical :: failed
+
+      bytes = to_bytes([value])
+      storage = text_storage(size(bytes))
+      call put_dataset(self%id, path, storage, [integer(hsize_t) ::], c_loc(bytes), failed)
+      call close_storage(storage)
+      call describe(self, path, description, failed, error)
+   end subroutine write_text
+
+   subroutine write_texts(self, path, values, description, error)
+      class(hdf5_file_type), intent(in) :: self
+      character(len=*), intent(in) :: path, values(:), description
+      type(error_type), allocatable, intent(out) :: error
+      character(kind=c_char), allocatable, target :: bytes(:)
+      type(storage_type) :: storage
+      logical :: failed
+
+      bytes = to_bytes(values)
+      storage = text_storage(max(1, len(values)))
+      call put_dataset(self%id, path, storage, shape(values, hsize_t), c_loc(bytes), failed)
+      call close_storage(storage)
+      call describe(self, path, description, failed, error)
+   end subroutine write_texts
+
+   subroutine set_integer(self, object, name, value, error)
+      class(hdf5_file_type), intent(in) :: self
+      character(len=*), intent(in) :: object, name
+      integer, intent(in) :: value
+      type(error_type), allocatable, intent(out) :: error
+      integer, target :: number
+      logical :: failed
+
+      number = value
+      call put_attribute(self%id, object, name, integer_storage(), [integer(hsize_t) ::], &
+            c_loc(number), failed)
+      if (failed) call write_error(self, object//'@'//name, error)
+   end subroutine set_integer
+
+   subroutine set_integers(self, object, name, values, error)
+      class(hdf5_file_type), intent(in) :: self
+      character(len=*), intent(in) :: object, name
+      integer, intent(in), contiguous, target :: values(:)
+      type(error_type), allocatable, intent(out) :: error
+      logical :: failed
+
+      call put_attribute(self%id, object, name, integer_storage(), shape(values, hsize_t), &
+            c_loc(values), failed)
+      if (failed) call write_error(self, object//'@'//name, error)
+   end subroutine set_integers
+
+   subroutine set_real(self, object, name, value, error)
+      class(hdf5_file_type), intent(in) :: self
+      character(len=*), intent(in) :: object, name
+      real(wp), intent(in) :: value
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), target :: number
+      logical :: failed
+
+      number = value
+      call put_attribute(self%id, object, name, real_storage(), [integer(hsize_t) ::], &
+            c_loc(number), failed)
+      if (failed) call write_error(self, object//'@'//name, error)
+   end subroutine set_real
+
+   !> A text of exactly its length: nothing padded, nothing trimmed.
+   subroutine set_text(self, object, name, value, error)
+      class(hdf5_file_type), intent(in) :: self
+      character(len=*), intent(in) :: object, name, value
+      type(error_type), allocatable, intent(out) :: error
+      character(kind=c_char), allocatable, target :: bytes(:)
+      type(storage_type) :: storage
+      logical :: failed
+
+      bytes = to_bytes([value])
+      storage = text_storage(size(bytes))
+      call put_attribute(self%id, object, name, storage, [integer(hsize_t) ::], c_loc(bytes), &
+            failed)
+      call close_storage(storage)
+      if (failed) call write_error(self, object//'@'//name, error)
+   end subroutine set_text
+
+   !> Makes an empty dataset of numbers that grows by `append`.
+   subroutine create_series(self, path, kind, n_components, chunk_rows, description, error)
+      class(hdf5_file_type), intent(in) :: self
+      character(len=*), intent(in) :: path, description
+      integer, intent(in) :: kind           !! series_real or series_integer
+      integer, intent(in) :: n_components   !! 0: shape (N) in the file; n: shape N x n
+      integer, intent(in) :: chunk_rows     !! rows that lie together in the file
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+      type(storage_type) :: storage
+      logical :: failed
+
+      storage = real_storage()
+      if (kind == series_integer) storage = integer_storage()
+      call make_series(self%id, path, storage, n_components, chunk_rows, failed)
+      call describe(self, path, description, failed, error)
+   end subroutine create_series
+
+   !> Makes an empty list of texts that grows by `append`; longer texts are cut.
+   subroutine create_text_series(self, path, length, chunk_rows, description, error)
+      class(hdf5_file_type), intent(in) :: self
+      character(len=*), intent(in) :: path, description
+      integer, intent(in) :: length, chunk_rows
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+      type(storage_type) :: storage
+      logical :: failed
+
+      storage = text_storage(length)
+      call make_series(self%id, path, storage, 0, chunk_rows, failed)
+      call close_storage(storage)
+      call describe(self, path, description, failed, error)
+   end subroutine create_text_series
+
+   subroutine append_reals(self, path, values, error)
+      class(hdf5_file_type), intent(in) :: self
+      character(len=*), intent(in) :: path
+      real(wp), intent(in), contiguous, target :: values(:)
+      type(error_type), allocatable, intent(out) :: error
+
+      call append_values(self, path, real_storage(), size(values), c_loc(values), error)
+   end subroutine append_reals
+
+   subroutine append_real_table(self, path, values, error)
+      class(hdf5_file_type), intent(in) :: self
+      character(len=*), intent(in) :: path
+      real(wp), intent(in), contiguous, target :: values(:, :)
+      type(error_type), allocatable, intent(out) :: error
+
+      call append_values(self, path, real_storage(), size(values), c_loc(values), error)
+   end subroutine append_real_table
+
+   subroutine append_integers(self, path, values, error)
+      class(hdf5_file_type), intent(in) :: self
+      character(len=*), intent(in) :: path
+      integer, intent(in), contiguous, target :: values(:)
+      type(error_type), allocatable, intent(out) :: error
+
+      call append_values(self, path, integer_storage(), size(values), c_loc(values), error)
+   end subroutine append_integers
+
+   subroutine append_longs(self, path, values, error)
+      class(hdf5_file_type), intent(in) :: self
+      character(len=*), intent(in) :: path
+      integer(int64), intent(in), contiguous, target :: values(:)
+      type(error_type), allocatable, intent(out) :: error
+
+      call append_values(self, path, long_storage(), size(values), c_loc(values), error)
+   end subroutine append_longs
+
+   subroutine append_texts(self, path, values, error)
+      class(hdf5_file_type), intent(in) :: self
+      character(len=*), intent(in) :: path, values(:)
+      type(error_type), allocatable, intent(out) :: error
+      character(kind=c_char), allocatable, target :: bytes(:)
+      type(storage_type) :: storage
+
+      bytes = to_bytes(values)
+      storage = text_storage(max(1, len(values)))
+      call append_values(self, path, storage, size(values), c_loc(bytes), error)
+      call close_storage(storage)
+   end subroutine append_texts
+
+   subroutine append_values(self, path, storage, n_values, address, error)
+      class(hdf5_file_type), intent(in) :: self
+      character(len=*), intent(in) :: path
+      type(storage_type), intent(in) :: storage
+      integer, intent(in) :: n_values
+      type(c_ptr), intent(in) :: address
+      type(error_type), allocatable, intent(out) :: error
+      logical :: failed
+
+      call append_block(self%id, path, storage, n_values, address, failed)
+      if (failed) call write_error(self, path, error)
+   end subroutine append_values
+
+   !> Gives a new object its description, unless making it failed.
+   subroutine describe(self, path, description, failed, error)
+      class(hdf5_file_type), intent(in) :: self
+      character(len=*), intent(in) :: path, description
+      logical, intent(in) :: failed
+      type(error_type), allocatable, intent(out) :: error
+
+      if (failed) then
+         call write_error(self, path, error)
+      else
+         call self%set_attribute(path, 'description', description, error)
+      end if
+   end subroutine describe
+
+   !> The characters of the texts, one after the other; a blank for a text of no length.
+   pure function to_bytes(texts) result(bytes)
+      character(len=*), intent(in) :: texts(:)
+      character(kind=c_char), allocatable :: bytes(:)
+
+      allocate (bytes(max(1, len(texts))*size(texts)))
+      bytes = c_char_' '
+      if (len(texts) > 0) bytes = transfer(texts, bytes)
+   end function to_bytes
+
+   subroutine write_error(self, object, error)
+      class(hdf5_file_type), intent(in) :: self
+      character(len=*), intent(in) :: object
+      type(error_type), allocatable, intent(out) :: error
+      character(len=:), allocatable :: path
+
+      path = '(no file)'
+      if (allocated(self%path)) path = self%path
+      call new_error(error, status_file, 'cannot write '//object//" to '"//path// &
+            "': disk full, no access any more, or the file is not open")
+   end subroutine write_error
+
+   !> Why a file cannot be written, as the Fortran library sees it.
+   function reason(path) result(message)
+      character(len=*), intent(in) :: path
+      character(len=:), allocatable :: message
+      character(len=256) :: io_message
+      integer :: unit, status, first
+
+      open (newunit=unit, file=path, action='readwrite', status='unknown', iostat=status, &
+            iomsg=io_message)
+      if (status == 0) then
+         close (unit)
+         message = 'another program has it open, or the disk is full'
+      else
+         first = index(io_message, ': ', back=.true.)
+         message = trim(io_message(merge(first + 2, 1, first > 0):))
+      end if
+   end function reason
+
+end module hdf5_file

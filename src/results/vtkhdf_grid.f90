@@ -1,0 +1,319 @@
+!> The moving mesh in the group /VTKHDF of the result file, for ParaView and VTK 9.3 or later.
+!>
+!> VTKHDF 2.0, temporal UnstructuredGrid: the mesh is written once, the fields frame by frame.
+!> https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html#vtkhdf-file-format
+!> Frames of small meshes are gathered in memory and written in blocks; `flush` writes what is
+!> left, and must be called before the file is closed. The data are written first and the number
+!> of frames last: whatever happens in between, a reader finds the frames before.
+module vtkhdf_grid
+   use errors, only: error_type, new_error, status_internal
+   use hdf5_file, only: hdf5_file_type, series_integer, series_real
+   use kinds, only: int64, wp
+   implicit none
+   private
+
+   public :: vtkhdf_grid_type
+
+   character(len=*), parameter :: root = '/VTKHDF'
+   integer, parameter :: most_frames = 256   ! gathered, and in a chunk of the lists of frames
+   integer, parameter :: most_values = 2**16   ! points and cells of the gathered frames
+   integer, parameter :: fewest_rows = 256     ! in a chunk of a field
+   integer, parameter :: most_rows = 2**14     ! likewise
+
+   !> One quantity at the points or in the cells, for the gathered frames and the next one.
+   type :: field_type
+      character(len=:), allocatable :: data_path, offset_path
+      integer :: n = 0                      ! points or cells
+      real(wp), allocatable :: held(:, :)   ! (component, point or cell, frame after frame)
+   end type field_type
+
+   !> The grid: the mesh, its fields and the number of frames written.
+   type :: vtkhdf_grid_type
+      private
+      integer :: n_points = 0
+      integer :: n_cells = 0
+      integer :: n_written = 0          ! frames in the file
+      integer :: n_held = 0             ! frames gathered
+      real(wp), allocatable :: times(:)   ! of them
+      type(field_type), allocatable :: fields(:)
+   contains
+      procedure :: create
+      procedure :: add_point_field
+      procedure :: add_cell_field
+      procedure :: append_frame
+      procedure :: count_frames
+      procedure :: flush => flush_frames
+      generic :: set_values => set_scalars, set_vectors
+      procedure, private :: set_scalars, set_vectors
+   end type vtkhdf_grid_type
+
+contains
+
+   !> Writes the mesh. Cell types: 1 vertex, 3 line, 5, 9 and 22, 23 linear and quadratic
+   !> triangle and quadrilateral.
+   subroutine create(self, file, points, types, connectivity, offsets, error)
+      class(vtkhdf_grid_type), intent(out) :: self
+      type(hdf5_file_type), intent(in) :: file
+      real(wp), contiguous, intent(in) :: points(:, :)       !! (3, n_points)
+      integer, contiguous, intent(in) :: types(:)            !! (n_cells)
+      integer, contiguous, intent(in) :: connectivity(:)     !! points of the cells, counted from 0
+      integer, contiguous, intent(in) :: offsets(:)          !! (n_cells + 1), the first is 0
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+
+      self%n_points = size(points, 2)
+      self%n_cells = size(types)
+      allocate (self%fields(0))
+      allocate (self%times(max(1, min(most_frames, &
+            most_values/max(1, self%n_points, self%n_cells)))))
+      if (size(points, 1) /= 3 .or. size(offsets) /= self%n_cells + 1 &
+            .or. offsets(size(offsets)) /= size(connectivity)) then
+         call new_error(error, status_internal, 'the arrays of the grid do not fit together')
+         return
+      end if
+      call file%create_group(root, 'the mesh and its frames, in the VTKHDF format', error)
+      if (.not. allocated(error)) call file%set_attribute(root, 'Version', [2, 0], error)
+      if (.not. allocated(error)) call file%set_attribute(root, 'Type', 'UnstructuredGrid', error)
+      if (.not. allocated(error)) call write_count(file, 'NumberOfPoints', self%n_points, error)
+      if (.not. allocated(error)) call write_count(file, 'NumberOfCells', self%n_cells, error)
+      if (.not. allocated(error)) call write_count(file, 'NumberOfConnectivityIds', &
+            size(connectivity), error)
+      if (.not. allocated(error)) call file%write_dataset(root//'/Points', points, &
+            'undeformed places of the points', error)
+      if (.not. allocated(error)) call file%write_dataset(root//'/Connectivity', connectivity, &
+            'points of the cells, counted from 0', error)
+      if (.not. allocated(error)) call file%write_dataset(root//'/Offsets', offsets, &
+            'where the points of each cell begin in the connectivity', error)
+      if (.not. allocated(error)) call file%write_bytes(root//'/Types', types, &
+            'VTK types of the cells', error)
+      if (.not. allocated(error)) call create_steps(file, error)
+   end subroutine create
+
+   subroutine write_count(file, name, number, error)
+      type(hdf5_file_type), intent(in) :: file
+      character(len=*), intent(in) :: name
+      integer, intent(in) :: number
+      type(error_type), allocatable, intent(out) :: error
+      integer :: list(1)
+
+      list = number
+      call file%write_dataset(root//'/'//name, list, 'the number in the name', error)
+   end subroutine write_count
+
+   !> Makes the group with one entry a frame.
+   subroutine create_steps(file, error)
+      type(hdf5_file_type), intent(in) :: file
+      type(error_type), allocatable, intent(out) :: error
+
+      call file%create_group(root//'/Steps', 'the frames', error)
+      if (.not. allocated(error)) call file%set_attribute(root//'/Steps', 'NSteps', 0, error)
+      if (.not. allocated(error)) call file%create_series(root//'/Steps/Values', series_real, 0, &
+            most_frames, 'time', error)
+      if (.not. allocated(error)) call create_step_list(file, 'PartOffsets', 0, error)
+      if (.not. allocated(error)) call create_step_list(file, 'NumberOfParts', 0, error)
+      if (.not. allocated(error)) call create_step_list(file, 'PointOffsets', 0, error)
+      if (.not. allocated(error)) call create_step_list(file, 'CellOffsets', 1, error)
+      if (.not. allocated(error)) call create_step_list(file, 'ConnectivityIdOffsets', 1, error)
+   end subroutine create_steps
+
+   subroutine create_step_list(file, name, n_components, error)
+      type(hdf5_file_type), intent(in) :: file
+      character(len=*), intent(in) :: name
+      integer, intent(in) :: n_components
+      type(error_type), allocatable, intent(out) :: error
+
+      call file%create_series(root//'/Steps/'//name, series_integer, n_components, &
+            most_frames, 'the same in each frame: the mesh does not change', error)
+   end subroutine create_step_list
+
+   !> Adds a quantity at the points; only before the first frame.
+   subroutine add_point_field(self, file, name, n_components, description, field, error)
+      class(vtkhdf_grid_type), intent(inout) :: self
+      type(hdf5_file_type), intent(in) :: file
+      character(len=*), intent(in) :: name, description
+      integer, intent(in) :: n_components   !! 1 scalar, 3 vector, 6 symmetric tensor
+      integer, intent(out) :: field         !! its number, for `set_values`
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+
+      call add_field(self, 'Point', name, n_components, self%n_points, field)
+      call create_field(self, file, self%fields(field), description, error)
+   end subroutine add_point_field
+
+   !> Adds a quantity of the cells; only before the first frame.
+   subroutine add_cell_field(self, file, name, n_components, description, field, error)
+      class(vtkhdf_grid_type), intent(inout) :: self
+      type(hdf5_file_type), intent(in) :: file
+      character(len=*), intent(in) :: name, description
+      integer, intent(in) :: n_components   !! 1 scalar, 3 vector, 6 symmetric tensor
+      integer, intent(out) :: field         !! its number, for `set_values`
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+
+      call add_field(self, 'Cell', name, n_components, self%n_cells, field)
+      call create_field(self, file, self%fields(field), description, error)
+   end subroutine add_cell_field
+
+   !> Appends a field, all zero, to the list.
+   subroutine add_field(self, place, name, n_components, n_values, field)
+      type(vtkhdf_grid_type), intent(inout) :: self
+      character(len=*), intent(in) :: place   !! 'Point' or 'Cell'
+      character(len=*), intent(in) :: name
+      integer, intent(in) :: n_components, n_values
+      integer, intent(out) :: field
+      type(field_type), allocatable :: longer(:)
+      integer :: i
+
+      field = size(self%fields) + 1
+      allocate (longer(field))
+      do i = 1, field - 1
+         longer(i) = self%fields(i)
+      end do
+      longer(field)%data_path = root//'/'//place//'Data/'//name
+      longer(field)%offset_path = root//'/Steps/'//place//'DataOffsets/'//name
+      longer(field)%n = n_values
+      allocate (longer(field)%held(n_components, n_values*size(self%times)), source=0.0_wp)
+      call move_alloc(longer, self%fields)
+   end subroutine add_field
+
+   !> Makes the datasets of a field in the file.
+   subroutine create_field(self, file, field, description, error)
+      type(vtkhdf_grid_type), intent(in) :: self
+      type(hdf5_file_type), intent(in) :: file
+      type(field_type), intent(in) :: field
+      character(len=*), intent(in) :: description
+      type(error_type), allocatable, intent(out) :: error
+      integer :: n_chunks, components
+
+      if (self%count_frames() > 0) then
+         call new_error(error, status_internal, field%data_path//' comes after the first frame')
+         return
+      end if
+      n_chunks = (field%n + most_rows - 1)/most_rows
+      components = size(field%held, 1)
+      if (components == 1) components = 0
+      call file%create_series(field%data_path, series_real, components, &
+            max(fewest_rows, (field%n + n_chunks - 1)/max(1, n_chunks)), description, error)
+      if (allocated(error)) return
+      call file%create_series(field%offset_path, series_integer, 0, most_frames, &
+            'where each frame begins in '//field%data_path, error)
+   end subroutine create_field
+
+   !> Hands over a scalar field for the next frame; it stays until it is set again.
+   pure subroutine set_scalars(self, field, values)
+      class(vtkhdf_grid_type), intent(inout) :: self
+      integer, intent(in) :: field
+      real(wp), intent(in) :: values(:)   !! (point or cell)
+      integer :: before
+
+      before = self%n_held*self%fields(field)%n
+      self%fields(field)%held(1, before + 1:before + self%fields(field)%n) = values
+   end subroutine set_scalars
+
+   !> Hands over a vector or tensor field for the next frame; it stays until it is set again.
+   pure subroutine set_vectors(self, field, values)
+      class(vtkhdf_grid_type), intent(inout) :: self
+      integer, intent(in) :: field
+      real(wp), intent(in) :: values(:, :)   !! (component, point or cell)
+      integer :: before
+
+      before = self%n_held*self%fields(field)%n
+      self%fields(field)%held(:, before + 1:before + self%fields(field)%n) = values
+   end subroutine set_vectors
+
+   !> Makes a frame of the fields as they were handed over.
+   subroutine append_frame(self, file, time, error)
+      class(vtkhdf_grid_type), intent(inout) :: self
+      type(hdf5_file_type), intent(in) :: file
+      real(wp), intent(in) :: time   !! or whatever orders the frames, e.g. a frequency
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+      integer :: i, n
+
+      self%n_held = self%n_held + 1
+      self%times(self%n_held) = time
+      if (self%n_held == size(self%times)) then
+         call self%flush(file, error)
+         return
+      end if
+      do i = 1, size(self%fields)
+         n = self%fields(i)%n
+         call copy_frame(self%fields(i), (self%n_held - 1)*n, self%n_held*n)
+      end do
+   end subroutine append_frame
+
+   !> Writes the gathered frames: data, entries in the lists, at last their number.
+   subroutine flush_frames(self, file, error)
+      class(vtkhdf_grid_type), intent(inout) :: self
+      type(hdf5_file_type), intent(in) :: file
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+      integer :: i, last
+
+      if (self%n_held == 0) return
+      do i = 1, size(self%fields)
+         call append_field(self, file, self%fields(i), error)
+         if (allocated(error)) return
+      end do
+      call append_steps(self, file, error)
+      if (allocated(error)) return
+      call file%set_attribute(root//'/Steps', 'NSteps', self%count_frames(), error)
+      if (allocated(error)) return
+      call file%flush(error)
+      if (allocated(error)) return
+      last = min(self%n_held, size(self%times) - 1)
+      do i = 1, size(self%fields)
+         call copy_frame(self%fields(i), last*self%fields(i)%n, 0)
+      end do
+      self%n_written = self%count_frames()
+      self%n_held = 0
+   end subroutine flush_frames
+
+   subroutine append_field(self, file, field, error)
+      type(vtkhdf_grid_type), intent(in) :: self
+      type(hdf5_file_type), intent(in) :: file
+      type(field_type), intent(in) :: field
+      type(error_type), allocatable, intent(out) :: error
+      integer(int64) :: begin(self%n_held)
+      integer :: i
+
+      call file%append(field%data_path, field%held(:, :self%n_held*field%n), error)
+      if (allocated(error)) return
+      do i = 1, self%n_held
+         begin(i) = int(self%n_written + i - 1, int64)*field%n
+      end do
+      call file%append(field%offset_path, begin, error)
+   end subroutine append_field
+
+   subroutine append_steps(self, file, error)
+      type(vtkhdf_grid_type), intent(in) :: self
+      type(hdf5_file_type), intent(in) :: file
+      type(error_type), allocatable, intent(out) :: error
+      character(len=*), parameter :: steps = root//'/Steps/'
+      integer, dimension(self%n_held) :: zero, one
+
+      zero = 0
+      one = 1
+      call file%append(steps//'PartOffsets', zero, error)
+      if (.not. allocated(error)) call file%append(steps//'NumberOfParts', one, error)
+      if (.not. allocated(error)) call file%append(steps//'PointOffsets', zero, error)
+      if (.not. allocated(error)) call file%append(steps//'CellOffsets', zero, error)
+      if (.not. allocated(error)) call file%append(steps//'ConnectivityIdOffsets', zero, error)
+      if (.not. allocated(error)) call file%append(steps//'Values', self%times(:self%n_held), error)
+   end subroutine append_steps
+
+   !> Copies the frame behind one place in the list to the one behind another.
+   pure subroutine copy_frame(field, from, to)
+      type(field_type), intent(inout) :: field
+      integer, intent(in) :: from, to
+      integer :: i
+
+      if (from == to) return
+      do i = 1, field%n
+         field%held(:, to + i) = field%held(:, from + i)
+      end do
+   end subroutine copy_frame
+
+   !> Frames appended so far, written or not.
+   pure integer function count_frames(self)
+      class(vtkhdf_grid_type), intent(in) :: self
+
+      count_frames = self%n_written + self%n_held
+   end function count_frames
+
+end module vtkhdf_grid
