@@ -69,9 +69,10 @@ contains
       character(len=*), intent(in) :: description
       type(error_type), allocatable, intent(out) :: error   !! status_file
 
-      call remember(self, self%reals, path, error)
+      call check_not_started(self, path, error)
       if (allocated(error)) return
       call file%create_series(self%group//'/'//path, series_real, 0, chunk_rows, description, error)
+      if (.not. allocated(error)) call remember(self%reals, self%group//'/'//path)
    end subroutine add_column
 
    !> Adds a column of integers; only before the first row.
@@ -81,10 +82,11 @@ contains
       character(len=*), intent(in) :: path, description
       type(error_type), allocatable, intent(out) :: error   !! status_file
 
-      call remember(self, self%integers, path, error)
+      call check_not_started(self, path, error)
       if (allocated(error)) return
       call file%create_series(self%group//'/'//path, series_integer, 0, chunk_rows, description, &
             error)
+      if (.not. allocated(error)) call remember(self%integers, self%group//'/'//path)
    end subroutine add_integer_column
 
    !> Adds a column of texts of at most `length` (and 80) characters; only before the first row.
@@ -95,9 +97,10 @@ contains
       integer, intent(in) :: length
       type(error_type), allocatable, intent(out) :: error   !! status_file
 
-      call remember(self, self%texts, path, error)
+      call check_not_started(self, path, error)
       if (allocated(error)) return
       call file%create_text_series(self%group//'/'//path, length, chunk_rows, description, error)
+      if (.not. allocated(error)) call remember(self%texts, self%group//'/'//path)
    end subroutine add_text_column
 
    !> Rows appended so far, written or not.
@@ -179,19 +182,21 @@ contains
       self%started = .true.
    end subroutine start
 
-   !> Notes the path of a new column, in a list that doubles when it is full.
-   subroutine remember(self, columns, path, error)
+   subroutine check_not_started(self, path, error)
       class(column_table_type), intent(in) :: self
-      type(columns_type), intent(inout) :: columns
       character(len=*), intent(in) :: path
       type(error_type), allocatable, intent(out) :: error
+
+      if (self%started) call new_error(error, status_internal, 'column '//path// &
+            ' comes after the first row of '//self%group)
+   end subroutine check_not_started
+
+   !> Notes the path of a new column, in a list that doubles when it is full.
+   pure subroutine remember(columns, path)
+      type(columns_type), intent(inout) :: columns
+      character(len=*), intent(in) :: path   !! in the file
       character(len=256), allocatable :: longer(:)
 
-      if (self%started) then
-         call new_error(error, status_internal, 'column '//path//' comes after the first row '// &
-               'of '//self%group)
-         return
-      end if
       if (.not. allocated(columns%paths)) allocate (columns%paths(8))
       if (columns%n == size(columns%paths)) then
          allocate (longer(2*columns%n))
@@ -199,7 +204,7 @@ contains
          call move_alloc(longer, columns%paths)
       end if
       columns%n = columns%n + 1
-      columns%paths(columns%n) = self%group//'/'//path
+      columns%paths(columns%n) = path
    end subroutine remember
 
 end module column_table
