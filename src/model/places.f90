@@ -6,7 +6,7 @@ module places
    private
 
    public :: place_type, source_line_type, source_file_type, source_type
-   public :: fail_at, note_at, place_text
+   public :: fail_at, note_at, place_text, line_text
 
    !> A stretch of one deck line; line 0 means nowhere in particular.
    type :: place_type
@@ -63,6 +63,16 @@ contains
          note = source%files(place%file)%name//':'//to_text(place%line)//': '//remark
       end if
    end function note_at
+
+   !> "file:line".
+   pure function line_text(source, place) result(string)
+      type(source_type), intent(in) :: source
+      type(place_type), intent(in) :: place
+      character(len=:), allocatable :: string
+
+      string = 'an unknown place'
+      if (is_known(source, place)) string = source%files(place%file)%name//':'//to_text(place%line)
+   end function line_text
 
    !> "file:line: cause", then the card, the line and a caret below what is meant.
    pure function place_text(source, place, cause) result(message)

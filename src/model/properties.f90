@@ -22,6 +22,7 @@ module properties
       character(len=name_length) :: name = ''
       logical :: has_elastic = .false.
       logical :: has_density = .false.
+      logical :: has_damping = .false.
       real(wp) :: young = 0.0_wp               !! E
       real(wp) :: poisson = 0.0_wp             !! nu
       real(wp) :: density = 0.0_wp             !! rho

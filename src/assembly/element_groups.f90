@@ -1,0 +1,252 @@
+!> The factory of element groups: gathers the model's elements by section and scheme, checks their
+!> geometry, and makes the objects that compute.
+module element_groups
+   use kinds, only: wp
+   use errors, only: error_type
+   use text, only: to_text
+   use places, only: fail_at
+   use model, only: model_type
+   use mesh, only: element_mass, element_spring1, element_spring2, element_springa, &
+         element_dashpot1, element_dashpot2, element_dashpota, element_truss, element_gap, &
+         scheme_implicit, scheme_explicit, mass_consistent
+   use properties, only: section_type, material_type
+   use element_interface, only: element_type
+   use axial_kinematics, only: one_freedom, two_freedoms, line_of_action
+   use point_mass, only: point_mass_type, new_point_mass
+   use spring, only: spring_type, new_spring
+   use dashpot, only: dashpot_type, new_dashpot
+   use truss, only: truss_type, new_truss, truss_material_type
+   implicit none
+   private
+
+   public :: group_type, build_groups
+
+   !> Elements of one kind, section, scheme and mass.
+   type :: group_type
+      class(element_type), allocatable :: element
+      integer :: kind = 0                        !! one of the element_ parameters
+      integer, allocatable :: member(:)          !! (n) element indices in the model
+      integer, allocatable :: ien(:, :)          !! (n_nodes, n) node indices
+      integer, allocatable :: lm(:, :)           !! (3 n_nodes, n) freedoms, 0: does not exist
+      integer :: scheme = scheme_implicit
+      logical :: lumped = .true.
+      real(wp), allocatable :: damping(:, :, :)  !! (3 n_nodes, 3 n_nodes, n), empty without any
+   end type group_type
+
+contains
+
+   !> Makes the groups of a model. A line element of no length is an error at its line.
+   subroutine build_groups(groups, model, lumped_default, error)
+      type(group_type), allocatable, intent(out) :: groups(:)
+      type(model_type), intent(in) :: model
+      logical, intent(in) :: lumped_default      !! mass of groups that do not say which
+      type(error_type), allocatable, intent(out) :: error
+      integer, allocatable :: key(:)
+      integer :: e, g, n_groups, scheme_of(model%elements%n)
+      logical :: lumped_of(model%elements%n)
+
+      call resolve_schemes(model, lumped_default, scheme_of, lumped_of)
+      call number_groups(model, scheme_of, lumped_of, key, n_groups)
+      allocate (groups(n_groups))
+      do g = 1, n_groups
+         groups(g)%member = pack([(e, e=1, model%elements%n)], key == g)
+         e = groups(g)%member(1)
+         groups(g)%kind = model%elements%kind(e)
+         groups(g)%scheme = scheme_of(e)
+         groups(g)%lumped = lumped_of(e)
+         call gather_nodes(groups(g), model)
+         call make_element(groups(g), model, error)
+         if (allocated(error)) return
+         call store_damping(groups(g))
+      end do
+   end subroutine build_groups
+
+   !> What `*ELEMENT GROUP` says of each element.
+   subroutine resolve_schemes(model, lumped_default, scheme_of, lumped_of)
+      type(model_type), intent(in) :: model
+      logical, intent(in) :: lumped_default
+      integer, intent(out) :: scheme_of(:)
+      logical, intent(out) :: lumped_of(:)
+      integer :: g
+      logical :: lumped
+
+      scheme_of = scheme_implicit
+      lumped_of = lumped_default
+      do g = 1, size(model%groups)
+         lumped = lumped_default .or. model%groups(g)%scheme == scheme_explicit
+         if (model%groups(g)%mass /= 0) lumped = model%groups(g)%mass /= mass_consistent
+         scheme_of(model%element_sets(model%groups(g)%set)%members) = model%groups(g)%scheme
+         lumped_of(model%element_sets(model%groups(g)%set)%members) = lumped
+      end do
+   end subroutine resolve_schemes
+
+   !> Gives elements of one kind, section, scheme and mass one number; gaps get none.
+   subroutine number_groups(model, scheme_of, lumped_of, key, n_groups)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: scheme_of(:)
+      logical, intent(in) :: lumped_of(:)
+      integer, allocatable, intent(out) :: key(:)
+      integer, intent(out) :: n_groups
+      integer :: e, slot
+      integer, allocatable :: number_of(:)
+
+      allocate (key(model%elements%n))
+      allocate (number_of(40*(size(model%sections) + 1)))
+      number_of = 0
+      key = 0
+      n_groups = 0
+      do e = 1, model%elements%n
+         if (model%elements%kind(e) == element_gap) cycle
+         slot = 40*model%elements%section(e) + 4*(model%elements%kind(e) - 1) &
+               + 2*(scheme_of(e) - 1) + merge(1, 2, lumped_of(e))
+         if (number_of(slot) == 0) then
+            n_groups = n_groups + 1
+            number_of(slot) = n_groups
+         end if
+         key(e) = number_of(slot)
+      end do
+   end subroutine number_groups
+
+   subroutine gather_nodes(group, model)
+      type(group_type), intent(inout) :: group
+      type(model_type), intent(in) :: model
+      integer :: i, e, n_nodes
+
+      e = group%member(1)
+      n_nodes = model%elements%first(e + 1) - model%elements%first(e)
+      allocate (group%ien(n_nodes, size(group%member)))
+      do i = 1, size(group%member)
+         e = model%elements%first(group%member(i))
+         group%ien(:, i) = model%elements%nodes(e:e + n_nodes - 1)
+      end do
+   end subroutine gather_nodes
+
+   !> The one place that turns an element kind into its type.
+   subroutine make_element(group, model, error)
+      type(group_type), intent(inout) :: group
+      type(model_type), intent(in) :: model
+      type(error_type), allocatable, intent(out) :: error
+      type(section_type) :: section
+      real(wp), allocatable :: b(:, :), length(:)
+
+      section = model%sections(model%elements%section(group%member(1)))
+      if (group%kind == element_mass) then
+         call make_mass(group, section)
+         return
+      end if
+      call find_kinematics(group, model, section, b, length, error)
+      if (allocated(error)) return
+      select case (group%kind)
+      case (element_spring1, element_spring2, element_springa)
+         call make_spring(group, section, b)
+      case (element_dashpot1, element_dashpot2, element_dashpota)
+         call make_dashpot(group, section, b)
+      case (element_truss)
+         call make_truss(group, section, model%materials(section%material), b, length)
+      end select
+   end subroutine make_element
+
+   subroutine make_mass(group, section)
+      type(group_type), intent(inout) :: group
+      type(section_type), intent(in) :: section
+      type(point_mass_type), allocatable :: element
+      integer :: i
+
+      allocate (element)
+      call new_point_mass(element, [(section%coefficient, i=1, size(group%member))])
+      call move_alloc(element, group%element)
+   end subroutine make_mass
+
+   subroutine make_spring(group, section, b)
+      type(group_type), intent(inout) :: group
+      type(section_type), intent(in) :: section
+      real(wp), intent(in) :: b(:, :)
+      type(spring_type), allocatable :: element
+
+      allocate (element)
+      if (section%nonlinear) then
+         call new_spring(element, b, 0.0_wp, section%force%x, section%force%y)
+      else
+         call new_spring(element, b, section%coefficient)
+      end if
+      call move_alloc(element, group%element)
+   end subroutine make_spring
+
+   subroutine make_dashpot(group, section, b)
+      type(group_type), intent(inout) :: group
+      type(section_type), intent(in) :: section
+      real(wp), intent(in) :: b(:, :)
+      type(dashpot_type), allocatable :: element
+
+      allocate (element)
+      call new_dashpot(element, b, section%coefficient)
+      call move_alloc(element, group%element)
+   end subroutine make_dashpot
+
+   subroutine make_truss(group, section, material, b, length)
+      type(group_type), intent(inout) :: group
+      type(section_type), intent(in) :: section
+      type(material_type), intent(in) :: material
+      real(wp), intent(in) :: b(:, :), length(:)
+      type(truss_type), allocatable :: element
+      type(truss_material_type) :: shared
+
+      shared%young = material%young
+      shared%density = material%density
+      shared%area = section%area
+      shared%damping_alpha = material%damping_alpha
+      shared%damping_beta = material%damping_beta
+      allocate (element)
+      call new_truss(element, b, length, shared, group%lumped)
+      call move_alloc(element, group%element)
+   end subroutine make_truss
+
+   !> b of every element, and the lengths of those that act along a line.
+   subroutine find_kinematics(group, model, section, b, length, error)
+      type(group_type), intent(in) :: group
+      type(model_type), intent(in) :: model
+      type(section_type), intent(in) :: section
+      real(wp), allocatable, intent(out) :: b(:, :), length(:)
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i, e
+
+      allocate (b(3*size(group%ien, 1), size(group%member)), length(size(group%member)))
+      length = 0.0_wp
+      do i = 1, size(group%member)
+         select case (group%kind)
+         case (element_spring1, element_dashpot1)
+            b(:, i) = one_freedom(section%dof(1))
+         case (element_spring2, element_dashpot2)
+            b(:, i) = two_freedoms(section%dof)
+         case default
+            call line_of_action(model%nodes%x(:, group%ien(:, i)), b(:, i), length(i))
+            if (length(i) > 0.0_wp) cycle
+            e = group%member(i)
+            call fail_at(error, model%source, model%elements%place(e), 'element ' &
+                  //to_text(model%elements%id(e))//' has zero length: its two nodes coincide', &
+                  'give its nodes different coordinates, or use a SPRING2 or DASHPOT2')
+            return
+         end select
+      end do
+   end subroutine find_kinematics
+
+   !> Keeps the damping matrices if there is any damping in the group.
+   subroutine store_damping(group)
+      type(group_type), intent(inout) :: group
+      integer :: n, i
+      real(wp), allocatable :: matrix(:, :)
+
+      n = 3*group%element%n_nodes
+      allocate (matrix(n, n))
+      call group%element%damping(1, matrix)
+      if (.not. any(abs(matrix) > 0.0_wp)) then
+         allocate (group%damping(n, n, 0))
+         return
+      end if
+      allocate (group%damping(n, n, group%element%n_elements))
+      do i = 1, group%element%n_elements
+         call group%element%damping(i, group%damping(:, :, i))
+      end do
+   end subroutine store_damping
+
+end module element_groups

@@ -1,0 +1,244 @@
+!> Applied loads through the steps of a run: nodal forces, gravity, base motion.
+module external_load
+   use kinds, only: wp
+   use histories, only: amplitude_type, time_step
+   use amplitude_value, only: amplitude_at
+   use model, only: model_type
+   use steps, only: step_type, procedure_static
+   use structure, only: structure_type, inertia_force
+   implicit none
+   private
+
+   public :: load_set_type, begin_loads, load_at
+
+   !> A pattern of forces times a factor of time.
+   type :: load_type
+      integer :: kind = 0                        !! one of the kind_ parameters
+      real(wp), allocatable :: pattern(:)        !! (n_freedoms) at full size
+      real(wp), allocatable :: start(:)          !! (n_freedoms) what it is ramped from
+      logical :: ramped = .false.
+      logical :: has_amplitude = .false.
+      type(amplitude_type) :: amplitude
+      real(wp) :: t_start = 0.0_wp
+      real(wp) :: duration = 1.0_wp
+   end type load_type
+
+   integer, parameter :: kind_point = 1
+   integer, parameter :: kind_gravity = 2
+   integer, parameter :: kind_base = 3
+
+   !> All loads in force.
+   type :: load_set_type
+      type(load_type), allocatable :: loads(:)
+   end type load_set_type
+
+contains
+
+   !> Brings the loads of a step into force. Loads of earlier steps go on unless the step says
+   !> OP=NEW or loads the same freedom anew; without an amplitude a load is ramped over a static
+   !> step and applied at once in a dynamic one.
+   subroutine begin_loads(self, structure, model, i_step, t)
+      type(load_set_type), intent(inout) :: self
+      type(structure_type), intent(in) :: structure
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: i_step
+      real(wp), intent(in) :: t                  !! total time at the start of the step
+      integer :: i
+
+      if (.not. allocated(self%loads)) allocate (self%loads(0))
+      associate (step => model%steps(i_step))
+         call hold_earlier(self, step, t)
+         call add_point_loads(self, structure, model, step, t)
+         do i = 1, size(step%gravity)
+            call append(self, kind_gravity, gravity_pattern(structure, model, step%gravity(i)%set, &
+                  step%gravity(i)%acceleration))
+            call give_time(self%loads(size(self%loads)), model, step%gravity(i)%amplitude, t, step)
+         end do
+         do i = 1, size(step%base_motions)
+            call append(self, kind_base, base_pattern(structure, step%base_motions(i)%dof, &
+                  step%base_motions(i)%scale))
+            call give_time(self%loads(size(self%loads)), model, step%base_motions(i)%amplitude, t, &
+                  step)
+         end do
+      end associate
+   end subroutine begin_loads
+
+   !> Keeps what goes on: an amplitude on total time goes on by it, all else stays as it is. A
+   !> base motion ends with its step.
+   subroutine hold_earlier(self, step, t)
+      type(load_set_type), intent(inout) :: self
+      type(step_type), intent(in) :: step
+      real(wp), intent(in) :: t
+      type(load_type), allocatable :: kept(:)
+      logical :: keep
+      integer :: i, n
+
+      allocate (kept(size(self%loads)))
+      n = 0
+      do i = 1, size(self%loads)
+         keep = self%loads(i)%kind /= kind_base
+         if (self%loads(i)%kind == kind_point) keep = .not. step%new_loads
+         if (self%loads(i)%kind == kind_gravity) keep = .not. step%new_gravity
+         if (.not. keep) cycle
+         n = n + 1
+         kept(n) = self%loads(i)
+         if (kept(n)%has_amplitude .and. kept(n)%amplitude%time /= time_step) cycle
+         kept(n)%pattern = value_of(self%loads(i), t)
+         kept(n)%has_amplitude = .false.
+         kept(n)%ramped = .false.
+      end do
+      self%loads = kept(:n)
+   end subroutine hold_earlier
+
+   !> Loads on one freedom in one step add up; they replace those of earlier steps there.
+   subroutine add_point_loads(self, structure, model, step, t)
+      type(load_set_type), intent(inout) :: self
+      type(structure_type), intent(in) :: structure
+      type(model_type), intent(in) :: model
+      type(step_type), intent(in) :: step
+      real(wp), intent(in) :: t
+      real(wp) :: earlier(structure%map%n_freedoms), pattern(structure%map%n_freedoms)
+      integer :: i, f, a, last
+
+      earlier = 0.0_wp
+      do i = 1, size(step%loads)
+         f = structure%map%freedom(step%loads(i)%dof, step%loads(i)%node)
+         call take_over(self, f, t, earlier)
+      end do
+      do a = 0, size(model%amplitudes)
+         pattern = 0.0_wp
+         if (.not. any(step%loads%amplitude == a)) cycle
+         do i = 1, size(step%loads)
+            if (step%loads(i)%amplitude /= a) cycle
+            f = structure%map%freedom(step%loads(i)%dof, step%loads(i)%node)
+            pattern(f) = pattern(f) + step%loads(i)%value
+         end do
+         call append(self, kind_point, pattern)
+         last = size(self%loads)
+         call give_time(self%loads(last), model, a, t, step)
+         if (self%loads(last)%ramped) self%loads(last)%start = earlier
+      end do
+   end subroutine add_point_loads
+
+   !> Removes earlier point loads on freedom f and remembers their size.
+   subroutine take_over(self, f, t, earlier)
+      type(load_set_type), intent(inout) :: self
+      integer, intent(in) :: f
+      real(wp), intent(in) :: t
+      real(wp), intent(inout) :: earlier(:)
+      real(wp) :: now(size(earlier))
+      integer :: i
+
+      do i = 1, size(self%loads)
+         if (self%loads(i)%kind /= kind_point) cycle
+         now = value_of(self%loads(i), t)
+         earlier(f) = earlier(f) + now(f)
+         self%loads(i)%pattern(f) = 0.0_wp
+      end do
+   end subroutine take_over
+
+   subroutine append(self, kind, pattern)
+      type(load_set_type), intent(inout) :: self
+      integer, intent(in) :: kind
+      real(wp), intent(in) :: pattern(:)
+      type(load_type), allocatable :: longer(:)
+      integer :: n
+
+      n = size(self%loads)
+      allocate (longer(n + 1))
+      longer(:n) = self%loads
+      longer(n + 1)%kind = kind
+      longer(n + 1)%pattern = pattern
+      longer(n + 1)%start = 0.0_wp*pattern
+      call move_alloc(longer, self%loads)
+   end subroutine append
+
+   pure subroutine give_time(load, model, amplitude, t, step)
+      type(load_type), intent(inout) :: load
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: amplitude
+      real(wp), intent(in) :: t
+      type(step_type), intent(in) :: step
+
+      load%t_start = t
+      load%duration = step%duration
+      load%has_amplitude = amplitude > 0
+      if (load%has_amplitude) load%amplitude = model%amplitudes(amplitude)
+      load%ramped = step%procedure == procedure_static .and. .not. load%has_amplitude
+   end subroutine give_time
+
+   !> M times the acceleration, on the elements of a set (0: all).
+   function gravity_pattern(structure, model, set, acceleration) result(pattern)
+      type(structure_type), intent(in) :: structure
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: set
+      real(wp), intent(in) :: acceleration(3)
+      real(wp) :: pattern(structure%map%n_freedoms)
+      logical :: member(model%elements%n)
+      real(wp), allocatable :: m(:, :)
+      integer :: g, e, i
+
+      member = set == 0
+      if (set > 0) member(model%element_sets(set)%members) = .true.
+      pattern = 0.0_wp
+      do g = 1, size(structure%groups)
+         associate (group => structure%groups(g))
+            i = size(group%lm, 1)
+            allocate (m(i, i))
+            do e = 1, size(group%member)
+               if (.not. member(group%member(e))) cycle
+               call group%element%mass(e, group%lumped, m)
+               m(:, 1) = matmul(m, [(acceleration(modulo(i - 1, 3) + 1), i=1, size(m, 1))])
+               do i = 1, size(m, 1)
+                  if (group%lm(i, e) == 0) cycle
+                  pattern(group%lm(i, e)) = pattern(group%lm(i, e)) + m(i, 1)
+               end do
+            end do
+            deallocate (m)
+         end associate
+      end do
+   end function gravity_pattern
+
+   !> -M r: inertia of a ground acceleration of unit size along one direction.
+   function base_pattern(structure, dof, scale) result(pattern)
+      type(structure_type), intent(in) :: structure
+      integer, intent(in) :: dof
+      real(wp), intent(in) :: scale
+      real(wp) :: pattern(structure%map%n_freedoms)
+      real(wp) :: along(structure%map%n_freedoms)
+
+      along = merge(scale, 0.0_wp, structure%map%dof == dof)
+      pattern = -inertia_force(structure, along)
+   end function base_pattern
+
+   !> All applied forces at total time t.
+   pure function load_at(self, n_freedoms, t) result(force)
+      type(load_set_type), intent(in) :: self
+      integer, intent(in) :: n_freedoms
+      real(wp), intent(in) :: t
+      real(wp) :: force(n_freedoms)
+      integer :: i
+
+      force = 0.0_wp
+      do i = 1, size(self%loads)
+         force = force + value_of(self%loads(i), t)
+      end do
+   end function load_at
+
+   pure function value_of(load, t) result(force)
+      type(load_type), intent(in) :: load
+      real(wp), intent(in) :: t
+      real(wp) :: force(size(load%pattern))
+      real(wp) :: local_time
+
+      force = load%pattern
+      if (load%ramped) then
+         force = load%start + (load%pattern - load%start)*(t - load%t_start)/load%duration
+      else if (load%has_amplitude) then
+         local_time = t
+         if (load%amplitude%time == time_step) local_time = t - load%t_start
+         force = amplitude_at(load%amplitude, local_time)*load%pattern
+      end if
+   end function value_of
+
+end module external_load

@@ -1,0 +1,294 @@
+!> The structure as a mechanical system: its freedoms, element groups and mass, and what they
+!> answer: forces, matrices, energies.
+module structure
+   use kinds, only: wp
+   use errors, only: error_type
+   use text, only: to_text
+   use places, only: fail_at
+   use model, only: model_type
+   use element_groups, only: group_type, build_groups
+   use needed_freedoms, only: find_needed_freedoms
+   use dof_map, only: dof_map_type, new_dof_map
+   implicit none
+   private
+
+   public :: structure_type, new_structure
+   public :: elastic_force, damping_force, inertia_force, gather
+   public :: strain_energy, freedom_name, row_sum_mass
+
+   !> Everything that does not change from step to step, and the numbering that may.
+   type :: structure_type
+      type(dof_map_type) :: map
+      type(group_type), allocatable :: groups(:)
+      real(wp), allocatable :: lumped_mass(:)    !! (n_freedoms) of the lumped groups
+      logical :: has_consistent_mass = .false.
+      logical :: is_linear = .true.
+      integer, allocatable :: node_id(:)         !! the deck's node ids, for messages
+   end type structure_type
+
+contains
+
+   !> Builds groups, freedoms and mass. Errors: zero-length elements, empty freedoms.
+   subroutine new_structure(self, model, error)
+      type(structure_type), intent(out) :: self
+      type(model_type), intent(in) :: model
+      type(error_type), allocatable, intent(out) :: error
+      logical, allocatable :: needed(:, :)
+      logical :: lumped_default
+      integer :: i, g
+
+      lumped_default = .false.
+      do i = 1, size(model%steps)
+         lumped_default = lumped_default .or. model%steps(i)%explicit
+      end do
+      call build_groups(self%groups, model, lumped_default, error)
+      if (allocated(error)) return
+      call find_needed_freedoms(model, self%groups, needed)
+      call new_dof_map(self%map, needed)
+      self%node_id = model%nodes%id(:model%nodes%n)
+      do g = 1, size(self%groups)
+         call locate(self%groups(g), self%map)
+         self%has_consistent_mass = self%has_consistent_mass .or. .not. self%groups(g)%lumped
+         self%is_linear = self%is_linear .and. self%groups(g)%element%linear
+      end do
+      call lump_mass(self)
+      call check_freedoms(self, model, error)
+   end subroutine new_structure
+
+   !> The lm array: freedoms of every element of a group.
+   subroutine locate(group, map)
+      type(group_type), intent(inout) :: group
+      type(dof_map_type), intent(in) :: map
+      integer :: e, i
+
+      allocate (group%lm(3*size(group%ien, 1), size(group%member)))
+      do e = 1, size(group%member)
+         do i = 1, size(group%ien, 1)
+            group%lm(3*i - 2:3*i, e) = map%freedom(:, group%ien(i, e))
+         end do
+      end do
+   end subroutine locate
+
+   subroutine lump_mass(self)
+      type(structure_type), intent(inout) :: self
+      integer :: g, e, i
+      real(wp), allocatable :: m(:, :)
+
+      allocate (self%lumped_mass(self%map%n_freedoms))
+      self%lumped_mass = 0.0_wp
+      do g = 1, size(self%groups)
+         associate (group => self%groups(g))
+            if (.not. group%lumped) cycle
+            allocate (m(size(group%lm, 1), size(group%lm, 1)))
+            do e = 1, size(group%member)
+               call group%element%mass(e, .true., m)
+               do i = 1, size(m, 1)
+                  if (group%lm(i, e) == 0) cycle
+                  self%lumped_mass(group%lm(i, e)) = self%lumped_mass(group%lm(i, e)) + m(i, i)
+               end do
+            end do
+            deallocate (m)
+         end associate
+      end do
+   end subroutine lump_mass
+
+   !> A freedom must have stiffness, damping or mass, unless a condition or constraint holds it.
+   subroutine check_freedoms(self, model, error)
+      type(structure_type), intent(in) :: self
+      type(model_type), intent(in) :: model
+      type(error_type), allocatable, intent(out) :: error
+      logical :: carried(self%map%n_freedoms)
+      integer :: f, i
+
+      call find_carried(self, carried)
+      do i = 1, size(model%boundaries)
+         call mark(model%boundaries(i)%dof, model%boundaries(i)%node)
+      end do
+      do i = 1, size(model%equations)
+         call mark(model%equations(i)%dof(1), model%equations(i)%node(1))
+      end do
+      do f = 1, size(carried)
+         if (carried(f)) cycle
+         call fail_at(error, model%source, model%nodes%place(self%map%node(f)), &
+               freedom_name(self, f)//' has neither stiffness nor mass', &
+               'give it a mass, a spring or an element with stiffness, or fix it with *BOUNDARY')
+         return
+      end do
+
+   contains
+
+      subroutine mark(dof, node)
+         integer, intent(in) :: dof, node
+
+         if (self%map%freedom(dof, node) > 0) carried(self%map%freedom(dof, node)) = .true.
+      end subroutine mark
+
+   end subroutine check_freedoms
+
+   !> Freedoms with an entry on the diagonal of M, C or K, or on a nonlinear element.
+   subroutine find_carried(self, carried)
+      type(structure_type), intent(in) :: self
+      logical, intent(out) :: carried(:)
+      integer :: g, e, i
+      real(wp), allocatable :: k(:, :), m(:, :), c(:, :), zero(:)
+      logical :: entry
+
+      carried = .false.
+      do g = 1, size(self%groups)
+         associate (group => self%groups(g))
+            i = size(group%lm, 1)
+            allocate (k(i, i), m(i, i), c(i, i), zero(i))
+            zero = 0.0_wp
+            do e = 1, size(group%member)
+               call group%element%stiffness(e, zero, k)
+               call group%element%damping(e, c)
+               call group%element%mass(e, group%lumped, m)
+               do i = 1, size(group%lm, 1)
+                  entry = abs(k(i, i)) + abs(c(i, i)) + m(i, i) > 0.0_wp
+                  entry = entry .or. .not. group%element%linear
+                  if (group%lm(i, e) > 0 .and. entry) carried(group%lm(i, e)) = .true.
+               end do
+            end do
+            deallocate (k, m, c, zero)
+         end associate
+      end do
+   end subroutine find_carried
+
+   !> Values on freedoms gathered to the elements of a group.
+   pure subroutine gather(group, u, local)
+      type(group_type), intent(in) :: group
+      real(wp), intent(in) :: u(:)               !! (n_freedoms)
+      real(wp), intent(out) :: local(:, :)       !! (3 n_nodes, n_elements)
+      integer :: e, i
+
+      do e = 1, size(group%lm, 2)
+         do i = 1, size(group%lm, 1)
+            local(i, e) = 0.0_wp
+            if (group%lm(i, e) > 0) local(i, e) = u(group%lm(i, e))
+         end do
+      end do
+   end subroutine gather
+
+   !> Adds element forces into forces on freedoms.
+   pure subroutine scatter(group, local, force)
+      type(group_type), intent(in) :: group
+      real(wp), intent(in) :: local(:, :)
+      real(wp), intent(inout) :: force(:)
+      integer :: e, i
+
+      do e = 1, size(group%lm, 2)
+         do i = 1, size(group%lm, 1)
+            if (group%lm(i, e) == 0) cycle
+            force(group%lm(i, e)) = force(group%lm(i, e)) + local(i, e)
+         end do
+      end do
+   end subroutine scatter
+
+   !> Adds S_elastic(d) of the groups of a scheme.
+   pure subroutine elastic_force(self, scheme, d, force)
+      type(structure_type), intent(in) :: self
+      integer, intent(in) :: scheme              !! scheme_implicit or scheme_explicit
+      real(wp), intent(in) :: d(:)               !! (n_freedoms)
+      real(wp), intent(inout) :: force(:)        !! (n_freedoms)
+      real(wp), allocatable :: local(:, :), local_force(:, :)
+      integer :: g
+
+      do g = 1, size(self%groups)
+         if (self%groups(g)%scheme /= scheme) cycle
+         allocate (local(size(self%groups(g)%lm, 1), size(self%groups(g)%lm, 2)))
+         allocate (local_force, mold=local)
+         call gather(self%groups(g), d, local)
+         call self%groups(g)%element%internal_force(local, local_force)
+         call scatter(self%groups(g), local_force, force)
+         deallocate (local, local_force)
+      end do
+   end subroutine elastic_force
+
+   !> Adds C v of the groups of a scheme.
+   pure subroutine damping_force(self, scheme, v, force)
+      type(structure_type), intent(in) :: self
+      integer, intent(in) :: scheme
+      real(wp), intent(in) :: v(:)               !! (n_freedoms)
+      real(wp), intent(inout) :: force(:)        !! (n_freedoms)
+      real(wp), allocatable :: local(:, :)
+      integer :: g, e
+
+      do g = 1, size(self%groups)
+         if (self%groups(g)%scheme /= scheme .or. size(self%groups(g)%damping) == 0) cycle
+         allocate (local(size(self%groups(g)%lm, 1), size(self%groups(g)%lm, 2)))
+         call gather(self%groups(g), v, local)
+         do e = 1, size(local, 2)
+            local(:, e) = matmul(self%groups(g)%damping(:, :, e), local(:, e))
+         end do
+         call scatter(self%groups(g), local, force)
+         deallocate (local)
+      end do
+   end subroutine damping_force
+
+   !> M a of all groups.
+   pure function inertia_force(self, a) result(force)
+      type(structure_type), intent(in) :: self
+      real(wp), intent(in) :: a(:)               !! (n_freedoms)
+      real(wp) :: force(size(a))
+      real(wp), allocatable :: local(:, :), m(:, :)
+      integer :: g, e
+
+      force = self%lumped_mass*a
+      do g = 1, size(self%groups)
+         if (self%groups(g)%lumped) cycle
+         allocate (local(size(self%groups(g)%lm, 1), size(self%groups(g)%lm, 2)))
+         allocate (m(size(local, 1), size(local, 1)))
+         call gather(self%groups(g), a, local)
+         do e = 1, size(local, 2)
+            call self%groups(g)%element%mass(e, .false., m)
+            local(:, e) = matmul(m, local(:, e))
+         end do
+         call scatter(self%groups(g), local, force)
+         deallocate (local, m)
+      end do
+   end function inertia_force
+
+   !> Mass of each freedom with the consistent groups lumped by row sums.
+   pure function row_sum_mass(self) result(m)
+      type(structure_type), intent(in) :: self
+      real(wp) :: m(self%map%n_freedoms)
+      real(wp) :: along(self%map%n_freedoms)
+      integer :: i
+
+      m = self%lumped_mass
+      if (.not. self%has_consistent_mass) return
+      m = 0.0_wp
+      do i = 1, 3
+         along = merge(1.0_wp, 0.0_wp, self%map%dof == i)
+         m = m + along*inertia_force(self, along)
+      end do
+   end function row_sum_mass
+
+   !> Strain energy of all groups.
+   pure function strain_energy(self, d) result(energy)
+      type(structure_type), intent(in) :: self
+      real(wp), intent(in) :: d(:)               !! (n_freedoms)
+      real(wp) :: energy
+      real(wp), allocatable :: local(:, :)
+      integer :: g
+
+      energy = 0.0_wp
+      do g = 1, size(self%groups)
+         allocate (local(size(self%groups(g)%lm, 1), size(self%groups(g)%lm, 2)))
+         call gather(self%groups(g), d, local)
+         energy = energy + self%groups(g)%element%strain_energy(local)
+         deallocate (local)
+      end do
+   end function strain_energy
+
+   !> "node 7, freedom 2", for messages.
+   pure function freedom_name(self, f) result(name)
+      type(structure_type), intent(in) :: self
+      integer, intent(in) :: f
+      character(len=:), allocatable :: name
+
+      name = 'node '//to_text(self%node_id(self%map%node(f)))//', freedom ' &
+            //to_text(self%map%dof(f))
+   end function freedom_name
+
+end module structure

@@ -1,0 +1,114 @@
+!> Effective matrices c_m M + c_c C + c_k K with their factors; the few in use are kept.
+module effective_system
+   use kinds, only: wp, int64
+   use errors, only: error_type, new_error, status_numerical
+   use skyline_matrix, only: skyline_type, profile_type
+   use skyline_ldlt, only: factorize, solve, ldlt_report_type
+   use structure, only: structure_type, freedom_name
+   use effective_matrix, only: assemble_effective
+   implicit none
+   private
+
+   public :: effective_system_type, new_effective_system
+
+   integer, parameter :: n_slots = 4
+
+   !> One factorized matrix.
+   type :: slot_type
+      real(wp) :: factors(3) = -1.0_wp            !! c_m, c_c, c_k it was made for
+      integer(int64) :: last_use = -1
+      type(skyline_type) :: matrix
+   end type slot_type
+
+   !> The factorized matrices in use, and what they cost.
+   type :: effective_system_type
+      private
+      type(slot_type) :: slots(n_slots)
+      integer :: current = 1
+      integer(int64) :: clock = 0
+      integer(int64), public :: n_factorizations = 0
+      integer(int64), public :: n_solves = 0
+   contains
+      procedure :: prepare
+      procedure :: solve => solve_current
+      procedure :: forget
+   end type effective_system_type
+
+contains
+
+   !> An empty store of matrices.
+   subroutine new_effective_system(self)
+      type(effective_system_type), intent(out) :: self
+
+      self%current = 1
+   end subroutine new_effective_system
+
+   !> Drops every matrix: the profile, the groups or the tangent have changed.
+   subroutine forget(self)
+      class(effective_system_type), intent(inout) :: self
+      integer :: i
+
+      do i = 1, n_slots
+         self%slots(i)%factors = -1.0_wp
+         self%slots(i)%last_use = -1
+      end do
+   end subroutine forget
+
+   !> Makes c_m M + c_c C + c_k K the matrix that `solve` uses, from the store if it is there.
+   !> A vanishing pivot is an error that names the node and freedom.
+   subroutine prepare(self, structure, profile, d, factors, error)
+      class(effective_system_type), intent(inout) :: self
+      type(structure_type), intent(in) :: structure
+      type(profile_type), intent(in) :: profile
+      real(wp), intent(in) :: d(:)                !! (n_freedoms) where the tangent is taken
+      real(wp), intent(in) :: factors(3)          !! c_m, c_c, c_k
+      type(error_type), allocatable, intent(out) :: error
+      type(ldlt_report_type) :: report
+      integer :: i
+
+      self%clock = self%clock + 1
+      do i = 1, n_slots
+         if (any(abs(self%slots(i)%factors - factors) > 0.0_wp)) cycle
+         self%current = i
+         self%slots(i)%last_use = self%clock
+         return
+      end do
+      self%current = minloc(self%slots%last_use, dim=1)
+      associate (slot => self%slots(self%current))
+         call assemble_effective(structure, profile, d, factors, slot%matrix)
+         slot%factors = -1.0_wp
+         if (.not. slot%matrix%is_diagonal()) self%n_factorizations = self%n_factorizations + 1
+         call factorize(slot%matrix, report)
+         if (report%zero_pivot > 0) then
+            call name_singular(structure, report%zero_pivot, error)
+            return
+         end if
+         slot%factors = factors
+         slot%last_use = self%clock
+      end associate
+   end subroutine prepare
+
+   subroutine name_singular(structure, equation, error)
+      type(structure_type), intent(in) :: structure
+      integer, intent(in) :: equation
+      type(error_type), allocatable, intent(out) :: error
+      integer :: f
+
+      do f = 1, structure%map%n_freedoms
+         if (structure%map%id(structure%map%dof(f), structure%map%node(f)) == equation) exit
+      end do
+      call new_error(error, status_numerical, 'singular system: '//freedom_name(structure, f) &
+            //' can move without resistance'//new_line('a') &
+            //'  cure: hold it with *BOUNDARY, or connect it with an element that has stiffness')
+   end subroutine name_singular
+
+   !> Solves with the matrix last prepared; b is overwritten.
+   subroutine solve_current(self, b)
+      class(effective_system_type), intent(inout) :: self
+      real(wp), intent(inout) :: b(:)             !! (n_eq)
+
+      self%n_solves = self%n_solves + 1
+      call solve(self%slots(self%current)%matrix, b)
+   end subroutine solve_current
+
+end module effective_system

@@ -1,0 +1,104 @@
+!> Where the energy goes: kinetic and strain energy, damping, impacts and contact, work from outside;
+!> what is left over is the balance error of the time integration.
+module energy_ledger
+   use kinds, only: wp
+   use mesh, only: scheme_implicit, scheme_explicit
+   use structure, only: strain_energy, damping_force, inertia_force
+   use external_load, only: load_at
+   use motion_state, only: state_type
+   use equation_of_motion, only: system_type, force_balance
+   implicit none
+   private
+
+   public :: ledger_type, open_ledger, record_span, record_impact, close_increment
+
+   !> Energies and works since the start of the run.
+   type :: ledger_type
+      real(wp) :: kinetic = 0.0_wp
+      real(wp) :: strain = 0.0_wp
+      real(wp) :: damping = 0.0_wp
+      real(wp) :: plastic = 0.0_wp
+      real(wp) :: friction = 0.0_wp
+      real(wp) :: impact_loss = 0.0_wp          !! taken by impacts and by contact forces
+      real(wp) :: external_work = 0.0_wp
+      real(wp) :: total = 0.0_wp                !! kinetic and strain
+      real(wp) :: balance_error = 0.0_wp        !! total + losses - external work - initial total
+      real(wp) :: initial = 0.0_wp
+      real(wp) :: scale = 0.0_wp                !! largest energy or work met so far
+   end type ledger_type
+
+contains
+
+   !> Starts the account at the first state.
+   subroutine open_ledger(self, system, state)
+      type(ledger_type), intent(out) :: self
+      type(system_type), intent(in) :: system
+      type(state_type), intent(in) :: state
+
+      call close_increment(self, system, state)
+      self%initial = self%total
+      self%balance_error = 0.0_wp
+   end subroutine open_ledger
+
+   !> Works over a span of smooth motion, by the trapezoidal rule, which is exact for Newmark's
+   !> beta = 1/4, gamma = 1/2: loads and prescribed motion from outside, damping, contact forces.
+   subroutine record_span(self, system, from, to, contact_from, contact_to)
+      type(ledger_type), intent(inout) :: self
+      type(system_type), intent(in) :: system
+      type(state_type), intent(in) :: from, to
+      real(wp), intent(in) :: contact_from(:), contact_to(:)   !! (n_freedoms) contact forces
+      real(wp) :: delta_d(size(from%d)), force(size(from%d))
+
+      delta_d = to%d - from%d
+      force = load_at(system%loads, size(force), from%t) + load_at(system%loads, size(force), to%t)
+      self%external_work = self%external_work + dot_product(delta_d, force)/2.0_wp
+      self%impact_loss = self%impact_loss - dot_product(delta_d, contact_from + contact_to)/2.0_wp
+      if (.not. system%static) then
+         force = 0.0_wp
+         call damping_force(system%structure, scheme_implicit, from%v + to%v, force)
+         call damping_force(system%structure, scheme_explicit, from%v + to%v, force)
+         self%damping = self%damping + dot_product(delta_d, force)/2.0_wp
+      end if
+      if (size(system%motions%motions) == 0) return
+      call record_reactions(self, system, from, to, contact_from + contact_to)
+   end subroutine record_span
+
+   !> Work of the reactions where a freedom is moved.
+   subroutine record_reactions(self, system, from, to, contact)
+      type(ledger_type), intent(inout) :: self
+      type(system_type), intent(in) :: system
+      type(state_type), intent(in) :: from, to
+      real(wp), intent(in) :: contact(:)         !! sum of the contact forces at both ends
+      real(wp) :: moved(size(from%d)), reaction(size(from%d))
+
+      moved = merge(to%d - from%d, 0.0_wp, system%structure%map%prescribed)
+      if (.not. any(abs(moved) > 0.0_wp)) return
+      reaction = -force_balance(system, from) - force_balance(system, to) - contact
+      if (.not. system%static) reaction = reaction + inertia_force(system%structure, from%a + to%a)
+      self%external_work = self%external_work + dot_product(moved, reaction)/2.0_wp
+   end subroutine record_reactions
+
+   !> An impact: what it takes from the bodies and what a moving wall gives.
+   pure subroutine record_impact(self, loss, wall_work)
+      type(ledger_type), intent(inout) :: self
+      real(wp), intent(in) :: loss, wall_work
+
+      self%impact_loss = self%impact_loss + loss
+      self%external_work = self%external_work + wall_work
+   end subroutine record_impact
+
+   !> Energies at the end of an increment and the balance error.
+   subroutine close_increment(self, system, state)
+      type(ledger_type), intent(inout) :: self
+      type(system_type), intent(in) :: system
+      type(state_type), intent(in) :: state
+
+      self%kinetic = dot_product(state%v, inertia_force(system%structure, state%v))/2.0_wp
+      self%strain = strain_energy(system%structure, state%d)
+      self%total = self%kinetic + self%strain
+      self%balance_error = self%total + self%damping + self%plastic + self%friction &
+            + self%impact_loss - self%external_work - self%initial
+      self%scale = max(self%scale, abs(self%total), abs(self%external_work))
+   end subroutine close_increment
+
+end module energy_ledger

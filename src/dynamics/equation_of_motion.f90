@@ -1,0 +1,172 @@
+!> The equation of motion M a + C v + S(d) = f with its implicit and explicit parts, loads and
+!> prescribed motion: residual, effective matrix, equilibrium acceleration, reactions.
+module equation_of_motion
+   use kinds, only: wp
+   use errors, only: error_type
+   use mesh, only: scheme_implicit, scheme_explicit
+   use skyline_matrix, only: profile_type
+   use dof_map, only: reduce, expand, follow_constraints
+   use structure, only: structure_type, elastic_force, damping_force, inertia_force
+   use external_load, only: load_set_type, load_at
+   use prescribed_motion, only: motion_set_type, impose_motion
+   use motion_state, only: state_type, newmark_type, predict
+   use effective_system, only: effective_system_type
+   implicit none
+   private
+
+   public :: system_type
+   public :: predict_motion, fixed_force, residual, solve_motion, prepare_motion
+   public :: prepare_mass, solve_mass, force_balance, impose, resisting_force
+
+   !> A structure under the loads and conditions of a step, with its matrices.
+   type :: system_type
+      type(structure_type) :: structure
+      type(load_set_type) :: loads
+      type(motion_set_type) :: motions
+      type(newmark_type) :: newmark
+      type(profile_type) :: profile
+      type(effective_system_type) :: matrices
+      logical :: static = .false.
+      real(wp) :: tolerance = 1.0e-10_wp         !! of the Newton iteration, relative
+      integer :: max_iterations = 50
+      logical, allocatable :: massless(:)        !! (n_eq) equations without mass
+      real(wp) :: omega_max(2) = 0.0_wp          !! bound on the implicit, explicit frequencies
+   end type system_type
+
+contains
+
+   !> Predictors at the end of a step, prescribed and dependent freedoms in their places.
+   subroutine predict_motion(self, state, dt, beta, trial)
+      type(system_type), intent(in) :: self
+      type(state_type), intent(in) :: state
+      real(wp), intent(in) :: dt
+      real(wp), intent(in) :: beta               !! of this step, the impact step may have its own
+      type(state_type), intent(out) :: trial
+      type(newmark_type) :: newmark
+
+      if (self%static) then
+         trial = state
+         trial%t = state%t + dt
+      else
+         newmark = self%newmark
+         newmark%beta = beta
+         call predict(newmark, state, dt, trial)
+      end if
+      call impose(self, trial)
+   end subroutine predict_motion
+
+   !> Puts prescribed freedoms where they have to be at the state's time, dependent ones after them.
+   subroutine impose(self, state)
+      type(system_type), intent(in) :: self
+      type(state_type), intent(inout) :: state
+
+      call impose_motion(self%motions, state%t, state%d, state%v, state%a)
+      if (size(self%structure%map%dependent) == 0) return
+      call follow_constraints(self%structure%map, state%d)
+      call follow_constraints(self%structure%map, state%v)
+      call follow_constraints(self%structure%map, state%a)
+   end subroutine impose
+
+   !> The part of the residual that does not change in the iteration (HHT alpha, 0 without):
+   !> (1 + alpha) (f1 - S_E(d~, v~)) - alpha (f0 - S(d0, v0)).
+   function fixed_force(self, state, predictor) result(force)
+      type(system_type), intent(in) :: self
+      type(state_type), intent(in) :: state      !! at the start of the step
+      type(state_type), intent(in) :: predictor
+      real(wp) :: force(self%structure%map%n_freedoms)
+      real(wp) :: alpha
+
+      alpha = merge(0.0_wp, self%newmark%alpha, self%static)
+      force = load_at(self%loads, size(force), predictor%t) &
+            - resisting_force(self, scheme_explicit, predictor)
+      if (.not. abs(alpha) > 0.0_wp) return
+      force = (1.0_wp + alpha)*force - alpha*force_balance(self, state)
+   end function fixed_force
+
+   !> psi = fixed - (1 + alpha) S_I(d, v) - M a, on freedoms.
+   function residual(self, fixed, trial) result(psi)
+      type(system_type), intent(in) :: self
+      real(wp), intent(in) :: fixed(:)           !! from `fixed_force`
+      type(state_type), intent(in) :: trial
+      real(wp) :: psi(size(fixed))
+
+      psi = fixed - (1.0_wp + merge(0.0_wp, self%newmark%alpha, self%static)) &
+            *resisting_force(self, scheme_implicit, trial)
+      if (.not. self%static) psi = psi - inertia_force(self%structure, trial%a)
+   end function residual
+
+   !> S(d) + C v of the groups of a scheme; no damping in a static step.
+   function resisting_force(self, scheme, state) result(force)
+      type(system_type), intent(in) :: self
+      integer, intent(in) :: scheme
+      type(state_type), intent(in) :: state
+      real(wp) :: force(self%structure%map%n_freedoms)
+
+      force = 0.0_wp
+      call elastic_force(self%structure, scheme, state%d, force)
+      if (.not. self%static) call damping_force(self%structure, scheme, state%v, force)
+   end function resisting_force
+
+   !> f - C v - S(d) at a state, all groups.
+   function force_balance(self, state) result(force)
+      type(system_type), intent(in) :: self
+      type(state_type), intent(in) :: state
+      real(wp) :: force(self%structure%map%n_freedoms)
+
+      force = load_at(self%loads, size(force), state%t) &
+            - resisting_force(self, scheme_implicit, state) &
+            - resisting_force(self, scheme_explicit, state)
+   end function force_balance
+
+   !> Makes M + (1 + alpha)(gamma h C + beta h^2 K) ready, or K in a static step.
+   subroutine prepare_motion(self, dt, beta, d, error)
+      type(system_type), intent(inout) :: self
+      real(wp), intent(in) :: dt, beta
+      real(wp), intent(in) :: d(:)               !! where the tangent is taken
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: factors(3)
+
+      factors = [1.0_wp, self%newmark%gamma*dt, beta*dt**2]
+      factors(2:3) = (1.0_wp + self%newmark%alpha)*factors(2:3)
+      if (self%static) factors = [0.0_wp, 0.0_wp, 1.0_wp]
+      if (.not. self%structure%is_linear) call self%matrices%forget()
+      call self%matrices%prepare(self%structure, self%profile, d, factors, error)
+   end subroutine prepare_motion
+
+   !> Motion of the freedoms (acceleration, or displacement in a static step) under forces on them,
+   !> with the matrix last prepared.
+   function solve_motion(self, force) result(motion)
+      type(system_type), intent(inout) :: self
+      real(wp), intent(in) :: force(:)           !! (n_freedoms)
+      real(wp) :: motion(size(force))
+      real(wp) :: b(self%structure%map%n_eq)
+
+      b = reduce(self%structure%map, force)
+      call self%matrices%solve(b)
+      motion = expand(self%structure%map, b)
+   end function solve_motion
+
+   !> Makes M ready, massless equations with a unit diagonal.
+   subroutine prepare_mass(self, error)
+      type(system_type), intent(inout) :: self
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: d(self%structure%map%n_freedoms)
+
+      d = 0.0_wp
+      call self%matrices%prepare(self%structure, self%profile, d, [1.0_wp, 0.0_wp, 0.0_wp], error)
+   end subroutine prepare_mass
+
+   !> M^-1 force on freedoms, nothing on massless ones. `prepare_mass` comes first.
+   function solve_mass(self, force) result(motion)
+      type(system_type), intent(inout) :: self
+      real(wp), intent(in) :: force(:)           !! (n_freedoms)
+      real(wp) :: motion(size(force))
+      real(wp) :: b(self%structure%map%n_eq)
+
+      b = reduce(self%structure%map, force)
+      where (self%massless) b = 0.0_wp
+      call self%matrices%solve(b)
+      motion = expand(self%structure%map, b)
+   end function solve_mass
+
+end module equation_of_motion

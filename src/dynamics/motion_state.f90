@@ -1,0 +1,50 @@
+!> Displacement, velocity and acceleration at one time.
+module motion_state
+   use kinds, only: wp
+   implicit none
+   private
+
+   public :: state_type, newmark_type, predict, correct
+
+   !> Motion of all freedoms at total time t.
+   type :: state_type
+      real(wp) :: t = 0.0_wp
+      real(wp), allocatable :: d(:), v(:), a(:)   !! (n_freedoms)
+   end type state_type
+
+   !> Parameters of the time integration: Newmark's and that of Hilber, Hughes and Taylor.
+   type :: newmark_type
+      real(wp) :: gamma = 0.5_wp
+      real(wp) :: beta = 0.25_wp
+      real(wp) :: alpha = 0.0_wp                  !! -1/3 to 0
+   end type newmark_type
+
+contains
+
+   !> d~ = d + h v + h^2/2 (1 - 2 beta) a,  v~ = v + h (1 - gamma) a  (Hughes and Liu);
+   !> the acceleration starts at zero.
+   pure subroutine predict(newmark, state, dt, trial)
+      type(newmark_type), intent(in) :: newmark
+      type(state_type), intent(in) :: state
+      real(wp), intent(in) :: dt
+      type(state_type), intent(out) :: trial
+
+      trial%t = state%t + dt
+      trial%d = state%d + dt*state%v + dt**2/2.0_wp*(1.0_wp - 2.0_wp*newmark%beta)*state%a
+      trial%v = state%v + dt*(1.0_wp - newmark%gamma)*state%a
+      trial%a = 0.0_wp*state%a
+   end subroutine predict
+
+   !> d = d~ + beta h^2 a,  v = v~ + gamma h a, for a change of the acceleration.
+   pure subroutine correct(newmark, dt, delta_a, trial)
+      type(newmark_type), intent(in) :: newmark
+      real(wp), intent(in) :: dt
+      real(wp), intent(in) :: delta_a(:)          !! (n_freedoms)
+      type(state_type), intent(inout) :: trial
+
+      trial%a = trial%a + delta_a
+      trial%v = trial%v + newmark%gamma*dt*delta_a
+      trial%d = trial%d + newmark%beta*dt**2*delta_a
+   end subroutine correct
+
+end module motion_state

@@ -1,0 +1,100 @@
+!> The linear complementarity problem 0 <= x, W x + q >= 0, x (W x + q) = 0 with W symmetric
+!> positive definite, solved by the finite active-set method of Lawson and Hanson.
+module complementarity
+   use kinds, only: wp
+   use blas_interfaces, only: dposv
+   implicit none
+   private
+
+   public :: solve_complementarity, solve_equality
+
+   !> Residuals below this part of the problem's size count as zero.
+   real(wp), parameter :: relative_tolerance = 1.0e-12_wp
+
+contains
+
+   !> Finds the unique x. `solved` is false if W is not positive definite on the active rows.
+   pure subroutine solve_complementarity(w, q, x, solved)
+      real(wp), intent(in) :: w(:, :)       !! (n, n)
+      real(wp), intent(in) :: q(:)          !! (n)
+      real(wp), intent(out) :: x(:)         !! (n)
+      logical, intent(out) :: solved
+      logical :: active(size(q))
+      real(wp) :: residual(size(q)), trial(size(q)), threshold
+      integer :: entering, sweep
+
+      x = 0.0_wp
+      solved = .true.
+      active = .false.
+      threshold = relative_tolerance*max(maxval(abs(q)), tiny(1.0_wp))
+      do sweep = 1, 10*size(q) + 10
+         residual = matmul(w, x) + q
+         if (.not. any(residual < -threshold .and. .not. active)) return
+         entering = minloc(residual, dim=1, mask=.not. active)
+         active(entering) = .true.
+         do
+            call solve_active(w, q, active, trial, solved)
+            if (.not. solved) return
+            if (all(trial > 0.0_wp .or. .not. active)) exit
+            call step_to_bound(trial, x, active)
+         end do
+         x = trial
+      end do
+      solved = .false.
+   end subroutine solve_complementarity
+
+   !> Solves W x + q = 0, every row held whatever the sign of x.
+   pure subroutine solve_equality(w, q, x, solved)
+      real(wp), intent(in) :: w(:, :), q(:)
+      real(wp), intent(out) :: x(:)
+      logical, intent(out) :: solved
+      logical :: active(size(q))
+
+      active = .true.
+      call solve_active(w, q, active, x, solved)
+   end subroutine solve_equality
+
+   !> x from the active rows as equations, zero elsewhere.
+   pure subroutine solve_active(w, q, active, x, solved)
+      real(wp), intent(in) :: w(:, :), q(:)
+      logical, intent(in) :: active(:)
+      real(wp), intent(out) :: x(:)
+      logical, intent(out) :: solved
+      integer :: rows(count(active)), i, info
+      real(wp) :: matrix(count(active), count(active)), rhs(count(active), 1)
+
+      x = 0.0_wp
+      solved = .true.
+      if (size(rows) == 0) return
+      rows = pack([(i, i=1, size(q))], active)
+      matrix = w(rows, rows)
+      rhs(:, 1) = -q(rows)
+      call dposv('U', size(rows), 1, matrix, size(rows), rhs, size(rows), info)
+      solved = info == 0
+      if (solved) x(rows) = rhs(:, 1)
+   end subroutine solve_active
+
+   !> Goes from x towards the trial until a component reaches zero, and drops that component.
+   pure subroutine step_to_bound(trial, x, active)
+      real(wp), intent(in) :: trial(:)
+      real(wp), intent(inout) :: x(:)
+      logical, intent(inout) :: active(:)
+      real(wp) :: fraction
+      integer :: i, blocking
+
+      fraction = 2.0_wp
+      blocking = 0
+      do i = 1, size(x)
+         if (.not. active(i) .or. trial(i) > 0.0_wp) cycle
+         if (x(i) >= fraction*(x(i) - trial(i))) cycle
+         fraction = x(i)/(x(i) - trial(i))
+         blocking = i
+      end do
+      if (blocking == 0) blocking = minloc(trial, dim=1, mask=active)
+      fraction = min(fraction, 1.0_wp)
+      where (active) x = x + fraction*(trial - x)
+      x(blocking) = 0.0_wp
+      active(blocking) = .false.
+   end subroutine step_to_bound
+
+end module complementarity
