@@ -1,0 +1,312 @@
+!> The one list of keywords: where each may stand, its parameters, what its data lines hold.
+module card_rules
+   use errors, only: error_type
+   use places, only: place_type, source_type, fail_at
+   use words, only: word_length, squeezed, find_word, advice
+   use cards, only: card_type, parameter_type, has_parameter
+   implicit none
+   private
+
+   public :: find_rule, usage_of, check_card, is_note_card
+
+   integer, parameter :: rule_length = 150
+
+   !> keyword ; level ; parameters ; data line, "-" where there is none, "text" where anything goes.
+   !! Levels: model, step, both, any; note: accepted without effect; ~: does not work yet.
+   !! Parameters: NAME takes no value, NAME= takes one, NAME=! must be given, ~: not yet.
+   character(len=rule_length), parameter :: rules(*) = [character(len=rule_length) :: &
+      'HEADING;any;;text', &
+      'PARAMETER;any;;name = number', &
+      'INCLUDE;any;INPUT=!;-', &
+      'NODE;model;NSET=;id, x, y[, z]', &
+      'NSET;model;NSET=!/GENERATE;node ids and set names, or with GENERATE first, last[, step]', &
+      'ELSET;model;ELSET=!/GENERATE;element ids and set names, or with GENERATE '// &
+      'first, last[, step]', &
+      'ELEMENT;model;TYPE=!/ELSET=;id, nodes', &
+      'SOLID SECTION;model;ELSET=!/MATERIAL=!/~ELEMENTS=;area', &
+      'MATERIAL;model;NAME=!;-', &
+      'ELASTIC;model;TYPE=;E, nu', &
+      'DENSITY;model;;rho', &
+      'PLASTIC;~;HARDENING=;stress, plastic strain', &
+      'DAMPING;model;ALPHA=/BETA=;-', &
+      'SPRING;model;ELSET=!/NONLINEAR;the freedoms (none for SPRINGA), then '// &
+      'the stiffness, or with NONLINEAR lines of force, elongation', &
+      'DASHPOT;model;ELSET=!;the freedoms (none for DASHPOTA), then the coefficient', &
+      'MASS;model;ELSET=!;mass', &
+      'ELEMENT GROUP;model;ELSET=!/SCHEME=!/MASS=;-', &
+      'AMPLITUDE;model;NAME=!/TIME=;up to 4 pairs of time, value', &
+      'BOUNDARY;both;AMPLITUDE=/TYPE=/OP=;node or set, first dof[, last dof[, value]]', &
+      'BASE MOTION;step;AMPLITUDE=!/DOF=!;scale', &
+      'INITIAL CONDITIONS;both;TYPE=!;node or set, dof, value', &
+      'EQUATION;model;;number of terms, then up to 4 triples of node, dof, coefficient a line', &
+      'SURFACE;model;NAME=!/TYPE=!;nodes or node sets', &
+      'RIGID SURFACE;model;NAME=!/TYPE=!/AMPLITUDE=;a point x, y, z; then the outward normal '// &
+      'nx, ny, nz; with AMPLITUDE then dx, dy, dz, size', &
+      'SURFACE INTERACTION;model;NAME=!;-', &
+      'IMPACT;model;METHOD=/RESTITUTION=/RETURN=/SOLUTION=/BETA=/CAPTURE=/MAX EVENTS=/'// &
+      'EVENTS=/~STIFFNESS=;-', &
+      'FRICTION;~;;mu', &
+      'CONTACT PAIR;model;INTERACTION=!/TYPE=/PASSES=/~MASS=/~ADJUST?/~SMALL SLIDING;'// &
+      'slave surface, master surface', &
+      'GAP;model;ELSET=!/INTERACTION=!;clearance[, nx, ny, nz]', &
+      'STEP;any;INC=/NAME=/~NLGEOM?/~PERTURBATION;-', &
+      'END STEP;any;;-', &
+      'STATIC;step;DIRECT/~SOLVER=/~TOLERANCE=;dt, T', &
+      'DYNAMIC;step;DIRECT/EXPLICIT/GAMMA=/BETA=/ALPHA=/~ORDER=/~TOLERANCE=/~SOLVER=;dt, T', &
+      'FREQUENCY;~;SOLVER=;number of modes', &
+      'CLOAD;step;AMPLITUDE=/OP=;node or set, dof, force', &
+      'DLOAD;step;AMPLITUDE=/OP=;element set or nothing, GRAV, size, nx, ny, nz', &
+      'NODE PRINT;step;NSET=/FREQUENCY=;U, V, A, RF', &
+      'NODE FILE;step;NSET=/FREQUENCY=;U, V, A, RF', &
+      'EL PRINT;step;ELSET=/FREQUENCY=;S, E, ENER', &
+      'EL FILE;step;ELSET=/FREQUENCY=;S, E, ENER', &
+      'CONTACT PRINT;step;FREQUENCY=;CF, CDIS', &
+      'CONTACT FILE;step;FREQUENCY=;CF, CDIS', &
+      'ENERGY PRINT;step;FREQUENCY=/LIMIT=;-', &
+      'RESTART;~;WRITE/FREQUENCY=;-', &
+      'PREPRINT;note;;text', &
+      'PRINT;note;;text', &
+      'OUTPUT;note;;text', &
+      'NODE OUTPUT;note;;text', &
+      'ELEMENT OUTPUT;note;;text', &
+      'CONTACT OUTPUT;note;;text', &
+      'ENERGY OUTPUT;note;;text']
+
+contains
+
+   !> Index of a keyword in the rules, 0 if it is unknown.
+   pure function find_rule(keyword) result(rule)
+      character(len=*), intent(in) :: keyword   !! squeezed
+      integer :: rule
+
+      rule = find_word(keyword, keywords())
+   end function find_rule
+
+   !> What a data line of a card holds.
+   pure function usage_of(rule) result(usage)
+      integer, intent(in) :: rule
+      character(len=:), allocatable :: usage
+
+      usage = ''
+      if (rule > 0) usage = trim(part(rule, 4))
+   end function usage_of
+
+   !> True for a card that is accepted but cannot change the answer.
+   pure function is_note_card(rule) result(note)
+      integer, intent(in) :: rule
+      logical :: note
+
+      note = part(rule, 2) == 'note'
+   end function is_note_card
+
+   !> Checks keyword, level, parameters and the presence of data; sets the card's rule.
+   pure subroutine check_card(card, data, source, error)
+      type(card_type), intent(inout) :: card
+      type(place_type), intent(in) :: data(:)   !! the data lines of the deck
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      card%rule = find_rule(card%keyword)
+      if (card%rule == 0) then
+         call fail_at(error, source, card%place, "unknown keyword '*"//card%keyword//"'", &
+            cure=advice(card%keyword, keywords()))
+         return
+      end if
+      if (is_note_card(card%rule)) return
+      call check_level(card, source, error)
+      if (allocated(error)) return
+      do i = 1, size(card%parameters)
+         call check_parameter(card, i, source, error)
+         if (allocated(error)) return
+      end do
+      call check_required(card, source, error)
+      if (allocated(error)) return
+      call check_data(card, data, source, error)
+   end subroutine check_card
+
+   pure subroutine check_level(card, source, error)
+      type(card_type), intent(in) :: card
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      character(len=:), allocatable :: level, name
+
+      level = trim(part(card%rule, 2))
+      name = '*'//trim(part(card%rule, 1))
+      if (level == '~') then
+         call fail_at(error, source, card%place, name//' is known but does not work yet', &
+            cure='remove the card')
+      else if (level == 'model' .and. card%step > 0) then
+         call fail_at(error, source, card%place, name//' must not stand inside a step', &
+            cure='move it before the first *STEP')
+      else if (level == 'step' .and. card%step == 0) then
+         call fail_at(error, source, card%place, name//' must stand inside a step', &
+            cure='move it between *STEP and *END STEP')
+      end if
+   end subroutine check_level
+
+   pure subroutine check_parameter(card, i, source, error)
+      type(card_type), intent(in) :: card
+      integer, intent(in) :: i
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      character(len=word_length), allocatable :: list(:)
+      character(len=:), allocatable :: marks
+      integer :: j, k
+
+      list = parameter_names(card%rule)
+      associate (given => card%parameters(i))
+         k = find_word(given%name, list)
+         if (k == 0) then
+            call fail_at(error, source, given%place, "unknown parameter '"//given%name// &
+                  "' of *"//trim(part(card%rule, 1)), cure=advice(given%name, list))
+            return
+         end if
+         do j = 1, i - 1
+            if (card%parameters(j)%name /= given%name) cycle
+            call fail_at(error, source, given%place, given%name//' is given twice on this card', &
+               cure='keep one of the two')
+            return
+         end do
+         marks = parameter_marks(card%rule, k)
+         if (index(marks, '~') > 0) then
+            call fail_at(error, source, given%place, trim(list(k))// &
+                  ' is known but does not work yet', cure='remove the parameter')
+         else if (index(marks, '=') > 0) then
+            call require_value(given, source, error)
+         else if (index(marks, '?') == 0 .and. allocated(given%value)) then
+            call fail_at(error, source, given%place, trim(list(k))//' takes no value', &
+               cure='write '//trim(list(k))//' alone')
+         end if
+      end associate
+   end subroutine check_parameter
+
+   pure subroutine require_value(given, source, error)
+      type(parameter_type), intent(in) :: given
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      logical :: empty
+
+      empty = .not. allocated(given%value)
+      if (.not. empty) empty = len_trim(given%value) == 0
+      if (empty) call fail_at(error, source, given%place, given%name//' needs a value', &
+            cure='write '//given%name//'=value')
+   end subroutine require_value
+
+   pure subroutine check_required(card, source, error)
+      type(card_type), intent(in) :: card
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      character(len=word_length), allocatable :: list(:)
+      integer :: k
+
+      list = parameter_names(card%rule)
+      do k = 1, size(list)
+         if (index(parameter_marks(card%rule, k), '!') == 0) cycle
+         if (has_parameter(card, squeezed(list(k)))) cycle
+         call fail_at(error, source, card%place, '*'//trim(part(card%rule, 1))// &
+               ' needs the parameter '//trim(list(k)), cure='write '//trim(list(k))//'=value')
+         return
+      end do
+   end subroutine check_required
+
+   pure subroutine check_data(card, data, source, error)
+      type(card_type), intent(in) :: card
+      type(place_type), intent(in) :: data(:)
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      character(len=*), parameter :: optional_data(*) = [character(len=word_length) :: &
+         'STATIC', 'BASE MOTION', 'HEADING', 'PARAMETER']
+      character(len=:), allocatable :: usage
+
+      usage = usage_of(card%rule)
+      if (usage == '-' .and. card%last >= card%first) then
+         call fail_at(error, source, data(card%first), '*'//trim(part(card%rule, 1))// &
+               ' takes no data lines', cure='remove the line, or put its keyword before it')
+      end if
+      if (usage == '-' .or. card%last >= card%first) return
+      if (find_word(card%keyword, optional_data) > 0) return
+      call fail_at(error, source, card%place, '*'//trim(part(card%rule, 1))// &
+            ' has no data lines', cure='a line is: '//usage)
+   end subroutine check_data
+
+   !> The k-th of the parts between semicolons; the last one keeps its own.
+   pure function part(rule, k) result(string)
+      integer, intent(in) :: rule, k
+      character(len=rule_length) :: string
+      integer :: i, cut
+
+      string = rules(rule)
+      do i = 1, k - 1
+         cut = index(string, ';')
+         string = string(cut + 1:)
+      end do
+      if (k < 4) string = string(:index(string, ';') - 1)
+   end function part
+
+   pure function keywords() result(list)
+      character(len=word_length) :: list(size(rules))
+      integer :: i
+
+      do i = 1, size(rules)
+         list(i) = rules(i)(:index(rules(i), ';') - 1)
+      end do
+   end function keywords
+
+   !> Names of the parameters of a rule.
+   pure function parameter_names(rule) result(list)
+      integer, intent(in) :: rule
+      character(len=word_length), allocatable :: list(:)
+      character(len=word_length) :: word
+      integer :: k, n
+
+      n = parameter_count(rule)
+      allocate (list(n))
+      do k = 1, n
+         word = parameter_word(rule, k)
+         if (word(1:1) == '~') word = word(2:)
+         list(k) = word(:scan(word//'=', '=?!') - 1)
+      end do
+   end function parameter_names
+
+   !> The signs =, !, ? and ~ that stand with a parameter.
+   pure function parameter_marks(rule, k) result(marks)
+      integer, intent(in) :: rule, k
+      character(len=word_length) :: marks
+      character(len=word_length) :: word
+
+      word = parameter_word(rule, k)
+      marks = word(scan(word//'=', '=?!'):)
+      if (word(1:1) == '~') marks = '~'//marks(:word_length - 1)
+   end function parameter_marks
+
+   pure function parameter_count(rule) result(n)
+      integer, intent(in) :: rule
+      integer :: n
+      character(len=rule_length) :: string
+      integer :: i
+
+      string = part(rule, 3)
+      n = 0
+      if (string == '') return
+      n = 1
+      do i = 1, len_trim(string)
+         if (string(i:i) == '/') n = n + 1
+      end do
+   end function parameter_count
+
+   pure function parameter_word(rule, k) result(word)
+      integer, intent(in) :: rule, k
+      character(len=word_length) :: word
+      character(len=rule_length) :: string
+      integer :: i
+
+      string = part(rule, 3)
+      do i = 1, k - 1
+         string = string(index(string, '/') + 1:)
+      end do
+      if (index(string, '/') > 0) string = string(:index(string, '/') - 1)
+      word = string(:word_length)
+   end function parameter_word
+
+end module card_rules

@@ -1,0 +1,354 @@
+!> The deck's files cut into keyword cards and data lines; *INCLUDE is followed here.
+module card_splitter
+   use errors, only: error_type, new_error, status_file, status_deck
+   use places, only: place_type, source_type, fail_at
+   use words, only: squeezed, is_blank
+   use cards, only: card_type, deck_type, parameter_type, parameter_index
+   use source_reader, only: add_file
+   implicit none
+   private
+
+   public :: split_deck
+
+   integer, parameter :: kind_blank = 1, kind_comment = 2, kind_keyword = 3, kind_data = 4
+   integer, parameter :: max_depth = 50
+
+   !> What the splitting carries from line to line.
+   type :: progress_type
+      integer :: step = 0                 !! open step, 0 outside
+      integer :: n_steps = 0
+      integer :: open_step_card = 0       !! card that opened it
+      integer :: depth = 0                !! of includes
+      integer :: files(max_depth) = 0     !! those being read, outermost first
+   end type progress_type
+
+contains
+
+   !> Reads the deck and all it includes.
+   subroutine split_deck(deck, source, path, error)
+      type(deck_type), intent(out) :: deck
+      type(source_type), intent(inout) :: source
+      character(len=*), intent(in) :: path
+      type(error_type), allocatable, intent(out) :: error   !! status_file: the deck is not there
+      type(progress_type) :: progress
+
+      allocate (deck%cards(64), deck%data(1024))
+      call add_file(source, path, error)
+      if (allocated(error)) return
+      call split_file(deck, source, 1, progress, error)
+      if (allocated(error)) return
+      if (deck%n_cards == 0) then
+         call new_error(error, status_deck, path//':1: the deck is empty'//new_line('a')// &
+            '  cure: write at least *NODE, *ELEMENT and a step')
+      else if (progress%step > 0) then
+         call fail_at(error, source, deck%cards(progress%open_step_card)%place, &
+            'this step has no *END STEP', cure='close it with *END STEP')
+      else if (progress%n_steps == 0) then
+         call fail_at(error, source, deck%cards(deck%n_cards)%place, &
+            'the deck has no step', cure='add *STEP, *DYNAMIC or *STATIC, *END STEP')
+      end if
+   end subroutine split_deck
+
+   recursive subroutine split_file(deck, source, file, progress, error)
+      type(deck_type), intent(inout) :: deck
+      type(source_type), intent(inout) :: source
+      integer, intent(in) :: file
+      type(progress_type), intent(inout) :: progress
+      type(error_type), allocatable, intent(out) :: error
+      integer :: line
+
+      progress%depth = progress%depth + 1
+      progress%files(progress%depth) = file
+      line = 1
+      do while (line <= source%files(file)%n_lines)
+         select case (kind_of(source%files(file)%lines(line)%text))
+         case (kind_keyword)
+            call read_card(deck, source, file, line, error)
+            if (.not. allocated(error)) call place_card(deck, source, progress, error)
+         case (kind_data)
+            call add_data(deck, source, file, line, error)
+         end select
+         if (allocated(error)) return
+         line = line + 1
+      end do
+      progress%depth = progress%depth - 1
+   end subroutine split_file
+
+   !> Blank (also commas alone), comment, keyword or data line.
+   pure function kind_of(line) result(kind)
+      character(len=*), intent(in) :: line
+      integer :: kind
+      integer :: first
+
+      kind = kind_blank
+      first = verify(line, ' ,'//achar(9))
+      if (first == 0) return
+      kind = kind_data
+      if (line(first:first) /= '*') return
+      kind = kind_keyword
+      if (first == len(line)) return
+      if (line(first + 1:first + 1) == '*') kind = kind_comment
+   end function kind_of
+
+   pure subroutine add_data(deck, source, file, line, error)
+      type(deck_type), intent(inout) :: deck
+      type(source_type), intent(in) :: source
+      integer, intent(in) :: file, line
+      type(error_type), allocatable, intent(out) :: error
+      type(place_type), allocatable :: longer(:)
+      type(place_type) :: place
+
+      place%file = file
+      place%line = line
+      if (deck%n_cards == 0) then
+         call fail_at(error, source, place, 'data before any keyword card', &
+            cure='a deck begins with a keyword such as *HEADING or *NODE; comments begin with **')
+         return
+      end if
+      associate (card => deck%cards(deck%n_cards))
+         if (card%place%file == file) place%card = card%place%line
+         if (deck%n_data == size(deck%data)) then
+            allocate (longer(2*deck%n_data))
+            longer(:deck%n_data) = deck%data
+            call move_alloc(longer, deck%data)
+         end if
+         deck%n_data = deck%n_data + 1
+         deck%data(deck%n_data) = place
+         card%last = deck%n_data
+      end associate
+   end subroutine add_data
+
+   !> Reads a keyword line and those that a trailing comma joins to it.
+   subroutine read_card(deck, source, file, line, error)
+      type(deck_type), intent(inout) :: deck
+      type(source_type), intent(in) :: source
+      integer, intent(in) :: file
+      integer, intent(inout) :: line   !! first line in, last line out
+      type(error_type), allocatable, intent(out) :: error
+      type(card_type) :: card
+      type(place_type) :: place
+      logical :: continued
+
+      allocate (card%parameters(0))
+      card%keyword = ''
+      card%first = deck%n_data + 1
+      card%last = deck%n_data
+      place%file = file
+      place%line = line
+      card%place = place
+      call read_card_line(card, source%files(file)%lines(line)%text, place, continued)
+      if (card%keyword == '') then
+         call fail_at(error, source, card%place, "a '*' without a keyword", &
+            cure='write *KEYWORD, or ** for a comment')
+         return
+      end if
+      do while (continued .and. line < source%files(file)%n_lines)
+         if (kind_of(source%files(file)%lines(line + 1)%text) /= kind_data) exit
+         line = line + 1
+         place%line = line
+         place%card = card%place%line
+         call read_card_line(card, source%files(file)%lines(line)%text, place, continued)
+      end do
+      call append_card(deck, card)
+   end subroutine read_card
+
+   !> One line of a keyword card: the keyword (if it is still missing), then parameters.
+   subroutine read_card_line(card, line, place, continued)
+      type(card_type), intent(inout) :: card
+      character(len=*), intent(in) :: line
+      type(place_type), intent(in) :: place
+      logical, intent(out) :: continued
+      integer :: start, finish, first, last
+
+      continued = .false.
+      start = 1
+      do while (start <= len(line))
+         finish = index(line(start:), ',') + start - 2
+         if (finish < start - 1) finish = len(line)
+         continued = finish < len(line)
+         call trim_ends(line, start, finish, first, last)
+         start = finish + 2
+         if (first > last) cycle
+         continued = .false.
+         if (card%keyword == '') then
+            card%keyword = squeezed(line(first + 1:last))
+            card%place%column = first
+            card%place%length = last - first + 1
+         else
+            call add_parameter(card, line(first:last), place, first)
+         end if
+         continued = finish < len(line)
+      end do
+   end subroutine read_card_line
+
+   pure subroutine trim_ends(line, start, finish, first, last)
+      character(len=*), intent(in) :: line
+      integer, intent(in) :: start, finish
+      integer, intent(out) :: first, last
+
+      first = start
+      last = finish
+      do while (first <= last)
+         if (.not. is_blank(line(first:first))) exit
+         first = first + 1
+      end do
+      do while (last >= first)
+         if (.not. is_blank(line(last:last))) exit
+         last = last - 1
+      end do
+   end subroutine trim_ends
+
+   subroutine add_parameter(card, string, place, column)
+      type(card_type), intent(inout) :: card
+      character(len=*), intent(in) :: string
+      type(place_type), intent(in) :: place
+      integer, intent(in) :: column
+      type(parameter_type), allocatable :: longer(:)
+      integer :: i, n, equals
+
+      n = size(card%parameters)
+      allocate (longer(n + 1))
+      do i = 1, n
+         longer(i) = card%parameters(i)
+      end do
+      equals = index(string, '=')
+      if (equals > 0) then
+         longer(n + 1)%name = squeezed(string(:equals - 1))
+         longer(n + 1)%value = trim(adjustl(string(equals + 1:)))
+      else
+         longer(n + 1)%name = squeezed(string)
+      end if
+      longer(n + 1)%place = place
+      longer(n + 1)%place%column = column
+      longer(n + 1)%place%length = len(string)
+      call move_alloc(longer, card%parameters)
+   end subroutine add_parameter
+
+   subroutine append_card(deck, card)
+      type(deck_type), intent(inout) :: deck
+      type(card_type), intent(in) :: card
+      type(card_type), allocatable :: longer(:)
+      integer :: i
+
+      if (deck%n_cards == size(deck%cards)) then
+         allocate (longer(2*deck%n_cards))
+         do i = 1, deck%n_cards
+            longer(i) = deck%cards(i)
+         end do
+         call move_alloc(longer, deck%cards)
+      end if
+      deck%n_cards = deck%n_cards + 1
+      deck%cards(deck%n_cards) = card
+   end subroutine append_card
+
+   !> Gives the newest card its step; opens and closes steps; follows includes.
+   recursive subroutine place_card(deck, source, progress, error)
+      type(deck_type), intent(inout) :: deck
+      type(source_type), intent(inout) :: source
+      type(progress_type), intent(inout) :: progress
+      type(error_type), allocatable, intent(out) :: error
+      type(place_type) :: place
+
+      place = deck%cards(deck%n_cards)%place
+      select case (deck%cards(deck%n_cards)%keyword)
+      case ('STEP')
+         if (progress%step > 0) then
+            call fail_at(error, source, place, 'a step inside a step', &
+               cure='close the step before with *END STEP')
+            return
+         end if
+         progress%n_steps = progress%n_steps + 1
+         progress%step = progress%n_steps
+         progress%open_step_card = deck%n_cards
+      case ('ENDSTEP')
+         if (progress%step == 0) then
+            call fail_at(error, source, place, '*END STEP without *STEP', &
+               cure='remove it, or open the step with *STEP')
+            return
+         end if
+         progress%step = 0
+      case ('INCLUDE')
+         call follow_include(deck, source, progress, error)
+         return
+      end select
+      deck%cards(deck%n_cards)%step = progress%step
+   end subroutine place_card
+
+   !> Takes the *INCLUDE card away and reads its file in its place.
+   recursive subroutine follow_include(deck, source, progress, error)
+      type(deck_type), intent(inout) :: deck
+      type(source_type), intent(inout) :: source
+      type(progress_type), intent(inout) :: progress
+      type(error_type), allocatable, intent(out) :: error
+      type(card_type) :: card
+      character(len=:), allocatable :: path, trouble
+      integer :: i
+
+      card = deck%cards(deck%n_cards)
+      deck%n_cards = deck%n_cards - 1
+      i = parameter_index(card, 'INPUT')
+      if (i == 0 .or. size(card%parameters) /= 1) then
+         call fail_at(error, source, card%place, '*INCLUDE needs the parameter INPUT, and no other', &
+            cure='write *INCLUDE, INPUT=file')
+         return
+      end if
+      if (.not. allocated(card%parameters(1)%value)) card%parameters(1)%value = ''
+      path = beside(source%files(card%place%file)%name, unquoted(card%parameters(1)%value))
+      call find_trouble(source, progress, path, trouble)
+      if (allocated(trouble)) then
+         call fail_at(error, source, card%parameters(1)%place, trouble, &
+            cure='a file must not include itself, directly or through others')
+         return
+      end if
+      call add_file(source, path, error)
+      if (allocated(error)) then
+         if (error%status == status_file) call fail_at(error, source, card%parameters(1)%place, &
+               error%message, cure='the path is relative to the file that includes')
+         return
+      end if
+      call split_file(deck, source, source%n_files, progress, error)
+   end subroutine follow_include
+
+   !> A file that is being read must not be included again.
+   subroutine find_trouble(source, progress, path, trouble)
+      type(source_type), intent(in) :: source
+      type(progress_type), intent(in) :: progress
+      character(len=*), intent(in) :: path
+      character(len=:), allocatable, intent(out) :: trouble
+      integer :: i
+
+      do i = 1, progress%depth
+         if (source%files(progress%files(i))%name /= path) cycle
+         trouble = "include loop: '"//path//"' is being read already"
+         return
+      end do
+      if (progress%depth >= max_depth) trouble = 'includes go too deep'
+   end subroutine find_trouble
+
+   !> A path relative to the folder of a file.
+   pure function beside(file, path) result(whole)
+      character(len=*), intent(in) :: file, path
+      character(len=:), allocatable :: whole
+
+      whole = path
+      if (len(path) == 0) return
+      if (path(1:1) == '/') return
+      whole = file(:index(file, '/', back=.true.))//path
+      do while (index(whole, '/./') > 0)
+         whole = whole(:index(whole, '/./'))//whole(index(whole, '/./') + 3:)
+      end do
+      if (index(path, './') == 1 .and. index(whole, './') == 1) whole = whole(3:)
+   end function beside
+
+   pure function unquoted(string) result(bare)
+      character(len=*), intent(in) :: string
+      character(len=:), allocatable :: bare
+      integer :: n
+
+      bare = string
+      n = len(string)
+      if (n < 2) return
+      if (scan(string(1:1), '"''') == 1 .and. string(n:n) == string(1:1)) bare = string(2:n - 1)
+   end function unquoted
+
+end module card_splitter

@@ -1,0 +1,151 @@
+!> A deck file to a model: cuts it into cards, then lets one reader a family fill its part.
+module deck_reader
+   use errors, only: error_type
+   use places, only: note_at
+   use model, only: model_type
+   use histories, only: boundary_type, nodal_value_type
+   use cards, only: deck_type
+   use card_rules, only: check_card, is_note_card
+   use card_splitter, only: split_deck
+   use symbols, only: definition_type, read_symbols, apply_definitions, substitute_in_cards
+   use symbols, only: mark_used_symbols
+   use source_reader, only: add_note
+   use mesh_reader, only: read_nodes, read_elements
+   use set_reader, only: read_sets
+   use amplitude_reader, only: read_amplitudes
+   use material_reader, only: read_materials
+   use interaction_reader, only: read_interactions, check_methods
+   use section_reader, only: read_sections
+   use group_reader, only: read_groups
+   use surface_reader, only: read_surfaces, read_pairs
+   use condition_reader, only: read_boundaries, read_initial_conditions
+   use equation_reader, only: read_equations, check_equations
+   use step_reader, only: read_steps
+   implicit none
+   private
+
+   public :: read_deck, definition_type
+
+contains
+
+   !> Reads a deck and all it includes. Every list of the model is allocated afterwards.
+   subroutine read_deck(model, path, definitions, error)
+      type(model_type), intent(out) :: model
+      character(len=*), intent(in) :: path
+      type(definition_type), intent(in) :: definitions(:)   !! override *PARAMETER of the same name
+      type(error_type), allocatable, intent(out) :: error   !! status_deck, status_file, status_usage
+      type(deck_type) :: deck
+
+      allocate (model%notes(0))
+      call split_deck(deck, model%source, path, error)
+      if (allocated(error)) return
+      call read_symbols(deck, model%source, error)
+      if (allocated(error)) return
+      call apply_definitions(deck, definitions, error)
+      if (allocated(error)) return
+      call substitute_in_cards(deck, model%source, error)
+      if (allocated(error)) return
+      call check_cards(model, deck, error)
+      if (allocated(error)) return
+      call read_mesh(model, deck, error)
+      if (allocated(error)) return
+      call read_matter(model, deck, error)
+      if (allocated(error)) return
+      call read_history(model, deck, error)
+   end subroutine read_deck
+
+   !> Checks every card against the rules; keeps the heading and the notes.
+   subroutine check_cards(model, deck, error)
+      type(model_type), intent(inout) :: model
+      type(deck_type), intent(inout) :: deck
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      model%heading = ''
+      do i = 1, deck%n_cards
+         call check_card(deck%cards(i), deck%data, model%source, error)
+         if (allocated(error)) return
+         if (is_note_card(deck%cards(i)%rule)) call add_note(model%notes, note_at(model%source, &
+            deck%cards(i)%place, '*'//deck%cards(i)%keyword//' has no effect here'))
+         if (deck%cards(i)%keyword == 'HEADING') call add_heading(model, deck, i)
+      end do
+      call mark_used_symbols(deck, model%source)
+      do i = 1, size(deck%symbols)
+         if (deck%symbols(i)%used) cycle
+         call add_note(model%notes, note_at(model%source, deck%symbols(i)%place, &
+            'the parameter '//trim(deck%symbols(i)%name)//' is not used'))
+      end do
+   end subroutine check_cards
+
+   subroutine add_heading(model, deck, i)
+      type(model_type), intent(inout) :: model
+      type(deck_type), intent(in) :: deck
+      integer, intent(in) :: i
+      integer :: j
+
+      do j = deck%cards(i)%first, deck%cards(i)%last
+         if (len(model%heading) > 0) model%heading = model%heading//new_line('a')
+         model%heading = model%heading// &
+            trim(model%source%files(deck%data(j)%file)%lines(deck%data(j)%line)%text)
+      end do
+   end subroutine add_heading
+
+   !> Nodes, elements, sets.
+   subroutine read_mesh(model, deck, error)
+      type(model_type), intent(inout) :: model
+      type(deck_type), intent(inout) :: deck
+      type(error_type), allocatable, intent(out) :: error
+
+      call read_nodes(model, deck, error)
+      if (allocated(error)) return
+      call read_elements(model, deck, error)
+      if (allocated(error)) return
+      call read_sets(model, deck, error)
+   end subroutine read_mesh
+
+   !> What the elements and surfaces are made of.
+   subroutine read_matter(model, deck, error)
+      type(model_type), intent(inout) :: model
+      type(deck_type), intent(in) :: deck
+      type(error_type), allocatable, intent(out) :: error
+
+      call read_amplitudes(model, deck, error)
+      if (allocated(error)) return
+      call read_materials(model, deck, error)
+      if (allocated(error)) return
+      call read_interactions(model, deck, error)
+      if (allocated(error)) return
+      call read_sections(model, deck, error)
+      if (allocated(error)) return
+      call read_groups(model, deck, error)
+      if (allocated(error)) return
+      call read_surfaces(model, deck, error)
+      if (allocated(error)) return
+      call read_pairs(model, deck, error)
+      if (allocated(error)) return
+      call check_methods(model, error)
+   end subroutine read_matter
+
+   !> Conditions, constraints and steps.
+   subroutine read_history(model, deck, error)
+      type(model_type), intent(inout) :: model
+      type(deck_type), intent(in) :: deck
+      type(error_type), allocatable, intent(out) :: error
+      type(boundary_type), allocatable :: boundaries(:)
+      type(nodal_value_type), allocatable :: displacements(:), velocities(:)
+
+      call read_boundaries(boundaries, model, deck, 0, error)
+      if (allocated(error)) return
+      call move_alloc(boundaries, model%boundaries)
+      call read_initial_conditions(displacements, velocities, model, deck, 0, error)
+      if (allocated(error)) return
+      call move_alloc(displacements, model%initial_displacements)
+      call move_alloc(velocities, model%initial_velocities)
+      call read_equations(model, deck, error)
+      if (allocated(error)) return
+      call read_steps(model, deck, error)
+      if (allocated(error)) return
+      call check_equations(model, error)
+   end subroutine read_history
+
+end module deck_reader

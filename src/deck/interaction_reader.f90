@@ -1,0 +1,213 @@
+!> `*SURFACE INTERACTION` with its `*IMPACT`.
+module interaction_reader
+   use kinds, only: wp
+   use errors, only: error_type
+   use places, only: source_type, place_type, fail_at, note_at
+   use surfaces, only: interaction_type, method_transformation, method_fictitious_force
+   use surfaces, only: beta_automatic, beta_given
+   use properties, only: section_gap
+   use model, only: model_type
+   use model_building, only: find_named
+   use cards, only: deck_type, card_type, count_cards, get_word, get_real_parameter
+   use cards, only: get_name_parameter, get_integer_parameter, parameter_place, has_parameter
+   use cards, only: parameter_index
+   use numbers, only: parse_fraction
+   use source_reader, only: add_note
+   use words, only: word_length, squeezed
+   implicit none
+   private
+
+   public :: read_interactions, check_methods
+
+contains
+
+   !> Interactions in the order of the deck; each *IMPACT belongs to the one before it.
+   subroutine read_interactions(model, deck, error)
+      type(model_type), intent(inout) :: model
+      type(deck_type), intent(in) :: deck
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i, n
+
+      allocate (model%interactions(count_cards(deck, 'SURFACEINTERACTION')))
+      n = 0
+      do i = 1, deck%n_cards
+         select case (deck%cards(i)%keyword)
+         case ('SURFACEINTERACTION')
+            n = n + 1
+            call open_interaction(model, n, deck%cards(i), error)
+         case ('IMPACT')
+            if (n == 0) then
+               call fail_at(error, model%source, deck%cards(i)%place, &
+                  '*IMPACT belongs to a surface interaction', &
+                  cure='put *SURFACE INTERACTION, NAME=name before it')
+               return
+            end if
+            call read_impact(model%interactions(n), deck%cards(i), model%source, error)
+         end select
+         if (allocated(error)) return
+      end do
+   end subroutine read_interactions
+
+   subroutine open_interaction(model, n, card, error)
+      type(model_type), intent(inout) :: model
+      integer, intent(in) :: n
+      type(card_type), intent(in) :: card
+      type(error_type), allocatable, intent(out) :: error
+
+      call get_name_parameter(card, 'NAME', model%interactions(n)%name, model%source, error)
+      if (allocated(error)) return
+      model%interactions(n)%place = card%place
+      if (find_named(model%interactions(:n - 1), model%interactions(n)%name) == 0) return
+      call fail_at(error, model%source, parameter_place(card, 'NAME'), "surface interaction '"// &
+         trim(model%interactions(n)%name)//"' is defined twice", &
+         cure='give every interaction its own name')
+   end subroutine open_interaction
+
+   subroutine read_impact(interaction, card, source, error)
+      type(interaction_type), intent(inout) :: interaction
+      type(card_type), intent(in) :: card
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+
+      if (interaction%has_impact) then
+         call fail_at(error, source, card%place, 'this interaction has *IMPACT already', &
+            cure='keep one of the two')
+         return
+      end if
+      interaction%has_impact = .true.
+      call read_method(interaction, card, source, error)
+      if (allocated(error)) return
+      call read_speeds(interaction, card, source, error)
+      if (allocated(error)) return
+      call read_beta(interaction, card, source, error)
+      if (allocated(error)) return
+      call get_integer_parameter(card, 'MAXEVENTS', 1, interaction%max_events, source, error)
+   end subroutine read_impact
+
+   !> METHOD, and the parameters that only one of the methods has.
+   subroutine read_method(interaction, card, source, error)
+      type(interaction_type), intent(inout) :: interaction
+      type(card_type), intent(in) :: card
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      character(len=word_length), parameter :: methods(*) = [character(len=word_length) :: &
+         'TRANSFORMATION', 'FICTITIOUS FORCE', '~PENALTY', '~LAGRANGE']
+      character(len=word_length), parameter :: solutions(*) = [character(len=word_length) :: &
+         'ITERATION', 'DIRECT']
+      character(len=word_length), parameter :: events(*) = [character(len=word_length) :: &
+         'SUBSTEP', '~ANCHOR']
+      integer :: choice
+
+      call get_word(card, 'METHOD', methods, choice, source, error)
+      if (allocated(error)) return
+      interaction%method = method_transformation
+      if (choice == 2) interaction%method = method_fictitious_force
+      call get_word(card, 'SOLUTION', solutions, choice, source, error)
+      if (allocated(error)) return
+      interaction%direct = choice == 2
+      call get_word(card, 'EVENTS', events, choice, source, error)
+      if (allocated(error)) return
+      if (interaction%method == method_transformation) then
+         call refuse(card, 'RETURN', 'TRANSFORMATION', source, error)
+         if (allocated(error)) return
+         call refuse(card, 'SOLUTION', 'TRANSFORMATION', source, error)
+      else
+         call refuse(card, 'BETA', 'FICTITIOUS FORCE', source, error)
+         if (allocated(error)) return
+         call refuse(card, 'EVENTS', 'FICTITIOUS FORCE', source, error)
+      end if
+   end subroutine read_method
+
+   !> A parameter that a method would ignore is an error.
+   subroutine refuse(card, name, method, source, error)
+      type(card_type), intent(in) :: card
+      character(len=*), intent(in) :: name, method
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+
+      if (has_parameter(card, name)) call fail_at(error, source, parameter_place(card, name), &
+            name//' means nothing with METHOD='//method, cure='remove it, or change the method')
+   end subroutine refuse
+
+   !> RESTITUTION, RETURN and CAPTURE.
+   subroutine read_speeds(interaction, card, source, error)
+      type(interaction_type), intent(inout) :: interaction
+      type(card_type), intent(in) :: card
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+
+      interaction%has_restitution = has_parameter(card, 'RESTITUTION')
+      call get_real_parameter(card, 'RESTITUTION', interaction%restitution, source, error)
+      if (allocated(error)) return
+      call get_real_parameter(card, 'RETURN', interaction%return_parameter, source, error)
+      if (allocated(error)) return
+      interaction%has_capture = has_parameter(card, 'CAPTURE')
+      call get_real_parameter(card, 'CAPTURE', interaction%capture, source, error)
+      if (allocated(error)) return
+      if (interaction%restitution < 0.0_wp .or. interaction%restitution > 1.0_wp) then
+         call fail_at(error, source, parameter_place(card, 'RESTITUTION'), &
+            'RESTITUTION is out of range', cure='write a number from 0 to 1')
+      else if (interaction%return_parameter <= 0.0_wp .or. &
+         interaction%return_parameter >= 1.0_wp) then
+         call fail_at(error, source, parameter_place(card, 'RETURN'), &
+            'RETURN is out of range', cure='write a number between 0 and 1, neither included')
+      else if (interaction%capture < 0.0_wp) then
+         call fail_at(error, source, parameter_place(card, 'CAPTURE'), &
+            'CAPTURE must not be negative', cure='write a speed from 0 up')
+      end if
+   end subroutine read_speeds
+
+   !> BETA: AUTO, a number or a fraction such as 1/6.
+   subroutine read_beta(interaction, card, source, error)
+      type(interaction_type), intent(inout) :: interaction
+      type(card_type), intent(in) :: card
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      character(len=*), parameter :: cure = 'write AUTO, a number from 0 to 0.5, or one as 1/6'
+      character(len=:), allocatable :: cause
+      integer :: i
+
+      i = parameter_index(card, 'BETA')
+      if (i == 0) return
+      if (squeezed(card%parameters(i)%value) == 'AUTO') return
+      interaction%beta_choice = beta_given
+      call parse_fraction(squeezed(card%parameters(i)%value), interaction%beta, cause)
+      if (.not. allocated(cause)) then
+         if (interaction%beta < 0.0_wp .or. interaction%beta > 0.5_wp) cause = 'out of range'
+      end if
+      if (allocated(cause)) call fail_at(error, source, card%parameters(i)%place, &
+            'BETA: '//cause, cure=cure)
+   end subroutine read_beta
+
+   !> All interactions in use must have one method; those not in use are noted.
+   subroutine check_methods(model, error)
+      type(model_type), intent(inout) :: model
+      type(error_type), allocatable, intent(out) :: error
+      logical, allocatable :: used(:)
+      integer :: i, first
+
+      allocate (used(size(model%interactions)), source=.false.)
+      do i = 1, size(model%pairs)
+         used(model%pairs(i)%interaction) = .true.
+      end do
+      do i = 1, size(model%sections)
+         if (model%sections(i)%kind == section_gap) used(model%sections(i)%interaction) = .true.
+      end do
+      first = 0
+      do i = 1, size(used)
+         if (.not. used(i)) then
+            call add_note(model%notes, note_at(model%source, model%interactions(i)%place, &
+               "surface interaction '"//trim(model%interactions(i)%name)//"' is not used"))
+            cycle
+         end if
+         if (first == 0) first = i
+         if (model%interactions(i)%method == model%interactions(first)%method) cycle
+         call fail_at(error, model%source, model%interactions(i)%place, &
+            "the interactions '"//trim(model%interactions(first)%name)//"' and '"// &
+            trim(model%interactions(i)%name)//"' have different methods", &
+            cure='give all interactions in use the same METHOD')
+         return
+      end do
+   end subroutine check_methods
+
+end module interaction_reader

@@ -1,0 +1,238 @@
+!> `*NODE` and `*ELEMENT`.
+module mesh_reader
+   use kinds, only: wp
+   use errors, only: error_type
+   use places, only: place_type, source_type, fail_at, line_text
+   use mesh, only: element_mass, element_spring1, element_spring2, element_springa
+   use mesh, only: element_dashpot1, element_dashpot2, element_dashpota, element_truss, element_gap
+   use model, only: model_type
+   use cards, only: deck_type, card_type, get_word
+   use fields, only: fields_type, split_line, check_count, field_place, is_given
+   use fields, only: get_integer, get_reals
+   use words, only: word_length
+   use text, only: to_text
+   implicit none
+   private
+
+   public :: read_nodes, read_elements, element_names, kind_names
+
+   integer, parameter :: n_types = 10
+   !> Element types of the deck, the kinds they become and how many nodes they have.
+   character(len=word_length), parameter :: element_names(*) = [character(len=word_length) :: &
+      'MASS', 'SPRING1', 'SPRING2', 'SPRINGA', 'DASHPOT1', 'DASHPOT2', 'DASHPOTA', &
+      'T2D2', 'T3D2', 'GAPUNI', '~T3D3', '~CPE3', '~CPE4', '~CPE6', '~CPE8', '~CPE4R', '~CPE8R', &
+      '~CPS3', '~CPS4', '~CPS6', '~CPS8', '~CPS4R', '~CPS8R', &
+      '~CAX3', '~CAX4', '~CAX6', '~CAX8', '~CAX4R', '~CAX8R']
+   integer, parameter :: kinds_of_types(n_types) = [element_mass, element_spring1, &
+      element_spring2, element_springa, element_dashpot1, element_dashpot2, element_dashpota, &
+      element_truss, element_truss, element_gap]
+   integer, parameter :: nodes_of_types(n_types) = [1, 1, 2, 2, 1, 2, 2, 2, 2, 2]
+
+   !> Names of the element kinds, for messages.
+   character(len=word_length), parameter :: kind_names(*) = [character(len=word_length) :: &
+      'MASS', 'SPRING1', 'SPRING2', 'SPRINGA', 'DASHPOT1', 'DASHPOT2', 'DASHPOTA', 'T2D2', 'GAPUNI']
+
+contains
+
+   !> Fills the table of nodes from all *NODE cards.
+   subroutine read_nodes(model, deck, error)
+      type(model_type), intent(inout) :: model
+      type(deck_type), intent(inout) :: deck
+      type(error_type), allocatable, intent(out) :: error
+      type(fields_type) :: fields
+      integer :: i, j, n
+
+      n = count_lines(deck, 'NODE')
+      allocate (model%nodes%id(n), model%nodes%x(3, n), model%nodes%place(n))
+      do i = 1, deck%n_cards
+         if (deck%cards(i)%keyword /= 'NODE') cycle
+         deck%cards(i)%first_item = model%nodes%n + 1
+         do j = deck%cards(i)%first, deck%cards(i)%last
+            call split_line(fields, deck, deck%cards(i), j, model%source, error)
+            if (allocated(error)) return
+            call read_node(model, fields, error)
+            if (allocated(error)) return
+         end do
+         deck%cards(i)%last_item = model%nodes%n
+      end do
+   end subroutine read_nodes
+
+   subroutine read_node(model, fields, error)
+      type(model_type), intent(inout) :: model
+      type(fields_type), intent(in) :: fields
+      type(error_type), allocatable, intent(out) :: error
+      integer :: id, n, twin
+      real(wp) :: x(3)
+
+      call check_count(fields, 4, model%source, error)
+      if (allocated(error)) return
+      call get_integer(fields, 1, 'node id', id, model%source, error)
+      if (allocated(error)) return
+      call get_reals(fields, 2, 2, 'coordinate', x, model%source, error)
+      if (allocated(error)) return
+      if (id < 1) then
+         call fail_at(error, model%source, field_place(fields, 1), &
+            'a node id must be positive', cure='number nodes from 1')
+         return
+      end if
+      twin = model%nodes%index_of%find(id)
+      if (twin > 0) then
+         call fail_at(error, model%source, field_place(fields, 1), 'node '//to_text(id)// &
+               ' is defined twice, first at '//line_text(model%source, model%nodes%place(twin)), &
+            cure='give every node its own id')
+         return
+      end if
+      n = model%nodes%n + 1
+      model%nodes%n = n
+      model%nodes%id(n) = id
+      model%nodes%x(:, n) = x
+      model%nodes%place(n) = fields%place
+      call model%nodes%index_of%insert(id, n)
+   end subroutine read_node
+
+   !> Fills the table of elements from all *ELEMENT cards.
+   subroutine read_elements(model, deck, error)
+      type(model_type), intent(inout) :: model
+      type(deck_type), intent(inout) :: deck
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i, n
+
+      n = count_lines(deck, 'ELEMENT')
+      allocate (model%elements%id(n), model%elements%kind(n), model%elements%place(n))
+      allocate (model%elements%first(n + 1), model%elements%nodes(2*n))
+      model%elements%first(1) = 1
+      do i = 1, deck%n_cards
+         if (deck%cards(i)%keyword /= 'ELEMENT') cycle
+         deck%cards(i)%first_item = model%elements%n + 1
+         call read_element_card(model, deck, deck%cards(i), error)
+         if (allocated(error)) return
+         deck%cards(i)%last_item = model%elements%n
+      end do
+      n = model%elements%n
+      model%elements%id = model%elements%id(:n)
+      model%elements%kind = model%elements%kind(:n)
+      model%elements%place = model%elements%place(:n)
+      model%elements%first = model%elements%first(:n + 1)
+      model%elements%nodes = model%elements%nodes(:model%elements%first(n + 1) - 1)
+      allocate (model%elements%section(n), source=0)
+   end subroutine read_elements
+
+   subroutine read_element_card(model, deck, card, error)
+      type(model_type), intent(inout) :: model
+      type(deck_type), intent(in) :: deck
+      type(card_type), intent(in) :: card
+      type(error_type), allocatable, intent(out) :: error
+      type(place_type) :: places(3), place
+      integer :: numbers(3), choice, line, n
+
+      call get_word(card, 'TYPE', element_names, choice, model%source, error)
+      if (allocated(error)) return
+      n = 1 + nodes_of_types(choice)
+      line = card%first
+      do while (line <= card%last)
+         place = deck%data(line)
+         call read_numbers(numbers(:n), places(:n), deck, card, line, model%source, error)
+         if (allocated(error)) return
+         call add_element(model, kinds_of_types(choice), numbers(:n), places(:n), place, error)
+         if (allocated(error)) return
+      end do
+   end subroutine read_element_card
+
+   !> The id and the nodes of one element, over as many lines as trailing commas join.
+   subroutine read_numbers(numbers, places, deck, card, line, source, error)
+      integer, intent(out) :: numbers(:)
+      type(place_type), intent(out) :: places(:)
+      type(deck_type), intent(in) :: deck
+      type(card_type), intent(in) :: card
+      integer, intent(inout) :: line   !! first line in, the line behind the last out
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      type(fields_type) :: fields
+      integer :: k, n_read, n_here
+
+      n_read = 0
+      do while (n_read < size(numbers))
+         call split_line(fields, deck, card, line, source, error)
+         if (allocated(error)) return
+         line = line + 1
+         n_here = size(numbers) - n_read
+         call check_count(fields, n_here, source, error)
+         if (allocated(error)) return
+         if (fields%continued .and. line <= card%last) n_here = min(n_here, fields%n)
+         do k = 1, n_here
+            n_read = n_read + 1
+            places(n_read) = field_place(fields, k)
+            call get_integer(fields, k, what_is(n_read), numbers(n_read), source, error)
+            if (allocated(error)) return
+         end do
+      end do
+   end subroutine read_numbers
+
+   pure function what_is(position) result(what)
+      integer, intent(in) :: position
+      character(len=:), allocatable :: what
+
+      what = 'element id'
+      if (position > 1) what = 'node '//to_text(position - 1)//' of the element'
+   end function what_is
+
+   subroutine add_element(model, kind, numbers, places, place, error)
+      type(model_type), intent(inout) :: model
+      integer, intent(in) :: kind, numbers(:)
+      type(place_type), intent(in) :: places(:), place
+      type(error_type), allocatable, intent(out) :: error
+      integer :: k, e, first, node, twin
+
+      if (numbers(1) < 1) then
+         call fail_at(error, model%source, places(1), 'an element id must be positive', &
+            cure='number elements from 1')
+         return
+      end if
+      twin = model%elements%index_of%find(numbers(1))
+      if (twin > 0) then
+         call fail_at(error, model%source, places(1), 'element '//to_text(numbers(1))// &
+               ' is defined twice, first at '// &
+               line_text(model%source, model%elements%place(twin)), &
+            cure='give every element its own id')
+         return
+      end if
+      e = model%elements%n + 1
+      first = model%elements%first(e)
+      do k = 2, size(numbers)
+         node = model%nodes%index_of%find(numbers(k))
+         if (node == 0) then
+            call fail_at(error, model%source, places(k), 'no such node: '//to_text(numbers(k)), &
+               cure='define it with *NODE')
+            return
+         end if
+         model%elements%nodes(first + k - 2) = node
+      end do
+      if (size(numbers) == 3) then
+         if (numbers(2) == numbers(3)) then
+            call fail_at(error, model%source, places(3), 'the same node twice in one element', &
+               cure='join two different nodes')
+            return
+         end if
+      end if
+      model%elements%n = e
+      model%elements%id(e) = numbers(1)
+      model%elements%kind(e) = kind
+      model%elements%place(e) = place
+      model%elements%first(e + 1) = first + size(numbers) - 1
+      call model%elements%index_of%insert(numbers(1), e)
+   end subroutine add_element
+
+   !> Data lines of all cards of a keyword.
+   pure function count_lines(deck, keyword) result(n)
+      type(deck_type), intent(in) :: deck
+      character(len=*), intent(in) :: keyword
+      integer :: n
+      integer :: i
+
+      n = 0
+      do i = 1, deck%n_cards
+         if (deck%cards(i)%keyword == keyword) n = n + deck%cards(i)%last - deck%cards(i)%first + 1
+      end do
+   end function count_lines
+
+end module mesh_reader

@@ -1,0 +1,189 @@
+!> Numbers as a deck writes them: Fortran and C spelling, nothing that is not finite.
+module numbers
+   use kinds, only: wp, int64
+   implicit none
+   private
+
+   public :: parse_integer, parse_real, parse_fraction
+
+contains
+
+   !> An integer, sign allowed; anything else, a decimal point too, leaves a cause.
+   pure subroutine parse_integer(string, value, cause)
+      character(len=*), intent(in) :: string
+      integer, intent(out) :: value
+      character(len=:), allocatable, intent(out) :: cause   !! not allocated when all is well
+      integer(int64) :: number
+      integer :: i, start
+
+      value = 0
+      start = 1
+      if (len(string) > 0) then
+         if (scan(string(1:1), '+-') == 1) start = 2
+      end if
+      if (start > len(string) .or. verify(string(start:), '0123456789') > 0) then
+         cause = "'"//string//"' is not an integer"
+         return
+      end if
+      number = 0
+      do i = start, len(string)
+         number = 10*number + (iachar(string(i:i)) - iachar('0'))
+         if (number > huge(value)) then
+            cause = "the integer '"//string//"' is out of range"
+            return
+         end if
+      end do
+      if (string(1:1) == '-') number = -number
+      value = int(number)
+   end subroutine parse_integer
+
+   !> A finite real: digits with a point or none, exponent marked by e or d.
+   pure subroutine parse_real(string, value, cause)
+      character(len=*), intent(in) :: string
+      real(wp), intent(out) :: value
+      character(len=:), allocatable, intent(out) :: cause   !! not allocated when all is well
+      integer(int64) :: mantissa
+      integer :: n_digits, exponent, start
+      logical :: valid
+
+      call scan_real(string, mantissa, n_digits, exponent, valid)
+      value = 0.0_wp
+      if (.not. valid) then
+         cause = "'"//string//"' is not a number"
+      else if (mantissa == 0) then
+         value = 0.0_wp
+      else if (n_digits + exponent > 309) then
+         cause = "the number '"//string//"' is too large"
+      else if (n_digits + exponent < -330) then
+         value = 0.0_wp
+      else if (mantissa < 2_int64**53 .and. n_digits <= 18 .and. abs(exponent) <= 22) then
+         value = scaled(mantissa, exponent)
+         if (string(1:1) == '-') value = -value
+      else if (exceeds_huge(mantissa, n_digits, exponent)) then
+         cause = "the number '"//string//"' is too large"
+      else
+         start = 1
+         if (string(1:1) == '+') start = 2
+         read (string(start:), *) value
+      end if
+   end subroutine parse_real
+
+   !> A real, or two of them with a slash between, such as 1/6.
+   pure subroutine parse_fraction(string, value, cause)
+      character(len=*), intent(in) :: string
+      real(wp), intent(out) :: value
+      character(len=:), allocatable, intent(out) :: cause   !! not allocated when all is well
+      real(wp) :: divisor
+      integer :: slash
+
+      slash = index(string, '/')
+      if (slash == 0) then
+         call parse_real(string, value, cause)
+         return
+      end if
+      call parse_real(trim(string(:slash - 1)), value, cause)
+      if (allocated(cause)) return
+      call parse_real(trim(adjustl(string(slash + 1:))), divisor, cause)
+      if (allocated(cause)) return
+      if (abs(divisor) <= 0.0_wp) then
+         cause = "'"//string//"' divides by zero"
+         return
+      end if
+      if (abs(divisor) >= 1.0_wp .or. abs(value) < abs(divisor)*huge(value)) then
+         value = value/divisor
+      else
+         cause = "the number '"//string//"' is too large"
+      end if
+   end subroutine parse_fraction
+
+   !> Takes a number apart; its size is mantissa times ten to the exponent, as long as the
+   !> significant digits number 18 or fewer (further digits count in n_digits alone).
+   pure subroutine scan_real(string, mantissa, n_digits, exponent, valid)
+      character(len=*), intent(in) :: string
+      integer(int64), intent(out) :: mantissa
+      integer, intent(out) :: n_digits, exponent
+      logical, intent(out) :: valid
+      integer :: i, digit, written, n_seen
+      logical :: point
+
+      mantissa = 0
+      n_digits = 0
+      exponent = 0
+      n_seen = 0
+      point = .false.
+      written = 0
+      i = 1
+      if (len(string) > 0) then
+         if (scan(string(1:1), '+-') == 1) i = 2
+      end if
+      do while (i <= len(string))
+         digit = iachar(string(i:i)) - iachar('0')
+         if (digit >= 0 .and. digit <= 9) then
+            n_seen = n_seen + 1
+            if (point) exponent = exponent - 1
+            if (mantissa > 0 .or. digit > 0) n_digits = n_digits + 1
+            if (n_digits <= 18) mantissa = 10*mantissa + digit
+         else if (string(i:i) == '.' .and. .not. point) then
+            point = .true.
+         else
+            exit
+         end if
+         i = i + 1
+      end do
+      valid = n_seen > 0
+      if (valid .and. i <= len(string)) call scan_exponent(string(i:), written, valid)
+      exponent = exponent + written
+   end subroutine scan_real
+
+   !> The part from the exponent letter on; absurd exponents saturate.
+   pure subroutine scan_exponent(string, exponent, valid)
+      character(len=*), intent(in) :: string
+      integer, intent(out) :: exponent
+      logical, intent(out) :: valid
+      integer :: i, start
+
+      exponent = 0
+      valid = .false.
+      if (scan(string(1:1), 'eEdD') == 0 .or. len(string) < 2) return
+      start = 2
+      if (scan(string(2:2), '+-') == 1) start = 3
+      if (start > len(string)) return
+      if (verify(string(start:), '0123456789') > 0) return
+      valid = .true.
+      do i = start, len(string)
+         exponent = min(100000000, 10*exponent + iachar(string(i:i)) - iachar('0'))
+      end do
+      if (string(2:2) == '-') exponent = -exponent
+   end subroutine scan_exponent
+
+   !> Exact while both factors are: the quotient or product is rounded once.
+   pure function scaled(mantissa, exponent) result(value)
+      integer(int64), intent(in) :: mantissa
+      integer, intent(in) :: exponent
+      real(wp) :: value
+
+      if (exponent < 0) then
+         value = real(mantissa, wp)/10.0_wp**(-exponent)
+      else
+         value = real(mantissa, wp)*10.0_wp**exponent
+      end if
+   end function scaled
+
+   !> True when the number rounds to more than the largest double, 1.7976931348623157e308.
+   pure function exceeds_huge(mantissa, n_digits, exponent) result(exceeds)
+      integer(int64), intent(in) :: mantissa
+      integer, intent(in) :: n_digits, exponent
+      logical :: exceeds
+      integer(int64) :: leading
+      integer :: kept
+
+      exceeds = .false.
+      if (n_digits + exponent < 309) return
+      kept = min(n_digits, 18)
+      leading = mantissa
+      if (kept == 18) leading = leading/10
+      if (kept < 17) leading = leading*10_int64**(17 - kept)
+      exceeds = leading > 17976931348623157_int64
+   end function exceeds_huge
+
+end module numbers

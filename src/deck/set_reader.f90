@@ -1,0 +1,347 @@
+!> `*NSET`, `*ELSET` and the sets that *NODE and *ELEMENT fill; what names of sets mean.
+module set_reader
+   use errors, only: error_type
+   use places, only: place_type, source_type, fail_at
+   use properties, only: name_length
+   use integer_map, only: integer_map_type
+   use mesh, only: set_type
+   use model, only: model_type
+   use model_building, only: find_named, append, fit, sort_unique
+   use cards, only: deck_type, card_type, get_name_parameter, has_parameter, parameter_place
+   use fields, only: fields_type, split_line, check_count, field_place, is_given, is_integer
+   use fields, only: get_integer, get_name
+   use words, only: advice
+   use text, only: to_text
+   implicit none
+   private
+
+   public :: read_sets, find_nodes, find_element_set, find_node_set
+
+   !> A set while it is read: members so far, and the sets it takes in.
+   type :: draft_type
+      integer, allocatable :: members(:)
+      integer :: n_members = 0
+      integer, allocatable :: parts(:)           !! indices of the sets it names
+      integer :: n_parts = 0
+      type(place_type), allocatable :: part_places(:)
+      integer :: state = 0                       !! 0 open, 1 being resolved, 2 done
+   end type draft_type
+
+   !> All sets of one sort (nodes or elements) while they are read.
+   type :: drafts_type
+      character(len=8) :: what = ''              !! "node" or "element", for messages
+      type(set_type), allocatable :: sets(:)
+      type(draft_type), allocatable :: drafts(:)
+      integer :: n = 0
+   end type drafts_type
+
+contains
+
+   !> Reads all sets; they may name each other in any order.
+   subroutine read_sets(model, deck, error)
+      type(model_type), intent(inout) :: model
+      type(deck_type), intent(in) :: deck
+      type(error_type), allocatable, intent(out) :: error
+
+      call read_family(model%node_sets, 'node', ['NSET', 'NODE'], 'NSET', &
+         model%nodes%index_of, deck, model%source, error)
+      if (allocated(error)) return
+      call read_family(model%element_sets, 'element', ['ELSET  ', 'ELEMENT'], 'ELSET', &
+         model%elements%index_of, deck, model%source, error)
+   end subroutine read_sets
+
+   !> The sets of nodes or of elements, from their own cards and those that define members.
+   subroutine read_family(sets, what, keywords, parameter_name, index_of, deck, source, error)
+      type(set_type), allocatable, intent(out) :: sets(:)
+      character(len=*), intent(in) :: what, keywords(2), parameter_name
+      type(integer_map_type), intent(in) :: index_of
+      type(deck_type), intent(in) :: deck
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      type(drafts_type) :: family
+      integer :: i, set
+
+      family%what = what
+      call name_sets(family, keywords, parameter_name, deck, source, error)
+      if (allocated(error)) return
+      do i = 1, deck%n_cards
+         if (all(deck%cards(i)%keyword /= keywords)) cycle
+         if (.not. has_parameter(deck%cards(i), parameter_name)) cycle
+         call open_set(family, deck%cards(i), parameter_name, set, source, error)
+         if (allocated(error)) return
+         call read_members(family, set, deck%cards(i), index_of, deck, source, error)
+         if (allocated(error)) return
+      end do
+      do i = 1, family%n
+         call resolve(family, i, source, error)
+         if (allocated(error)) return
+      end do
+      allocate (sets(family%n))
+      do i = 1, family%n
+         sets(i)%name = family%sets(i)%name
+         sets(i)%place = family%sets(i)%place
+         call move_alloc(family%sets(i)%members, sets(i)%members)
+      end do
+   end subroutine read_family
+
+   !> Makes an empty draft for every name, so that sets may be used before they are defined.
+   subroutine name_sets(family, keywords, parameter_name, deck, source, error)
+      type(drafts_type), intent(inout) :: family
+      character(len=*), intent(in) :: keywords(2), parameter_name
+      type(deck_type), intent(in) :: deck
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i, n, set
+
+      n = 0
+      do i = 1, deck%n_cards
+         if (any(deck%cards(i)%keyword == keywords)) n = n + 1
+      end do
+      allocate (family%sets(n), family%drafts(n))
+      do i = 1, deck%n_cards
+         if (all(deck%cards(i)%keyword /= keywords)) cycle
+         if (.not. has_parameter(deck%cards(i), parameter_name)) cycle
+         call open_set(family, deck%cards(i), parameter_name, set, source, error)
+         if (allocated(error)) return
+      end do
+   end subroutine name_sets
+
+   !> Index of the set that a card fills; a new name is added.
+   subroutine open_set(family, card, parameter_name, set, source, error)
+      type(drafts_type), intent(inout) :: family
+      type(card_type), intent(in) :: card
+      character(len=*), intent(in) :: parameter_name
+      integer, intent(out) :: set
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      character(len=name_length) :: name
+
+      set = 0
+      call get_name_parameter(card, parameter_name, name, source, error)
+      if (allocated(error)) return
+      set = find_named(family%sets(:family%n), name)
+      if (set > 0) return
+      family%n = family%n + 1
+      set = family%n
+      family%sets(set)%name = name
+      family%sets(set)%place = card%place
+      allocate (family%drafts(set)%members(8), family%drafts(set)%parts(0))
+      allocate (family%drafts(set)%part_places(0))
+   end subroutine open_set
+
+   !> Adds what the data lines of a card say to a set.
+   subroutine read_members(family, set, card, index_of, deck, source, error)
+      type(drafts_type), intent(inout) :: family
+      integer, intent(in) :: set
+      type(card_type), intent(in) :: card
+      type(integer_map_type), intent(in) :: index_of
+      type(deck_type), intent(in) :: deck
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      type(fields_type) :: fields
+      integer :: line, item
+
+      associate (draft => family%drafts(set))
+         do item = card%first_item, card%last_item
+            call append(draft%members, draft%n_members, item)
+         end do
+      end associate
+      if (all(card%keyword /= ['NSET ', 'ELSET'])) return
+      do line = card%first, card%last
+         call split_line(fields, deck, card, line, source, error)
+         if (allocated(error)) return
+         if (has_parameter(card, 'GENERATE')) then
+            call add_range(family, set, fields, index_of, source, error)
+         else
+            call add_fields(family, set, fields, index_of, source, error)
+         end if
+         if (allocated(error)) return
+      end do
+   end subroutine read_members
+
+   !> Ids and names of sets, one a field.
+   subroutine add_fields(family, set, fields, index_of, source, error)
+      type(drafts_type), intent(inout) :: family
+      integer, intent(in) :: set
+      type(fields_type), intent(in) :: fields
+      type(integer_map_type), intent(in) :: index_of
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      integer :: k, id
+
+      do k = 1, fields%n
+         if (is_given(fields, k) .and. .not. is_integer(fields, k)) then
+            call add_part(family, set, fields, k, source, error)
+         else
+            call get_integer(fields, k, trim(family%what)//' id', id, source, error)
+            if (allocated(error)) return
+            call add_member(family, set, id, index_of, field_place(fields, k), source, error)
+         end if
+         if (allocated(error)) return
+      end do
+   end subroutine add_fields
+
+   subroutine add_member(family, set, id, index_of, place, source, error)
+      type(drafts_type), intent(inout) :: family
+      integer, intent(in) :: set, id
+      type(integer_map_type), intent(in) :: index_of
+      type(place_type), intent(in) :: place
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      integer :: member
+
+      member = index_of%find(id)
+      if (member == 0) then
+         call fail_at(error, source, place, 'no such '//trim(family%what)//': '//to_text(id), &
+            cure='members of a set must be defined')
+         return
+      end if
+      associate (draft => family%drafts(set))
+         call append(draft%members, draft%n_members, member)
+      end associate
+   end subroutine add_member
+
+   !> A field that names another set.
+   subroutine add_part(family, set, fields, k, source, error)
+      type(drafts_type), intent(inout) :: family
+      integer, intent(in) :: set, k
+      type(fields_type), intent(in) :: fields
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      character(len=name_length) :: name
+      integer :: part
+
+      call get_name(fields, k, trim(family%what)//' id or set', name, source, error)
+      if (allocated(error)) return
+      part = find_named(family%sets(:family%n), name)
+      if (part == 0) then
+         call fail_at(error, source, field_place(fields, k), &
+            'no such '//trim(family%what)//' set: '//trim(name), &
+            cure=advice(name, family%sets(:family%n)%name))
+         return
+      end if
+      associate (draft => family%drafts(set))
+         draft%parts = [draft%parts, part]
+         draft%part_places = [draft%part_places, field_place(fields, k)]
+         draft%n_parts = draft%n_parts + 1
+      end associate
+   end subroutine add_part
+
+   !> first, last[, step]; every id of the range must exist.
+   subroutine add_range(family, set, fields, index_of, source, error)
+      type(drafts_type), intent(inout) :: family
+      integer, intent(in) :: set
+      type(fields_type), intent(in) :: fields
+      type(integer_map_type), intent(in) :: index_of
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      integer :: first, last, step, i
+
+      call check_count(fields, 3, source, error)
+      if (allocated(error)) return
+      call get_integer(fields, 1, 'first', first, source, error)
+      if (allocated(error)) return
+      call get_integer(fields, 2, 'last', last, source, error)
+      if (allocated(error)) return
+      step = 1
+      if (is_given(fields, 3)) call get_integer(fields, 3, 'step', step, source, error)
+      if (allocated(error)) return
+      if (first < 1) then
+         call fail_at(error, source, field_place(fields, 1), 'ids are positive', &
+            cure='write first, last[, step]')
+      else if (last < first) then
+         call fail_at(error, source, field_place(fields, 2), &
+            'the last of the range is below the first', cure='write first, last[, step]')
+      else if (step < 1) then
+         call fail_at(error, source, field_place(fields, 3), &
+            'the step of the range must be positive', cure='write first, last[, step]')
+      end if
+      if (allocated(error)) return
+      do i = 0, (last - first)/step
+         call add_member(family, set, first + i*step, index_of, field_place(fields, 1), &
+            source, error)
+         if (allocated(error)) return
+      end do
+   end subroutine add_range
+
+   !> Takes in the sets that a set names, then sorts its members.
+   recursive subroutine resolve(family, set, source, error)
+      type(drafts_type), intent(inout) :: family
+      integer, intent(in) :: set
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      integer :: k, part
+      integer, allocatable :: members(:)
+
+      if (family%drafts(set)%state == 2) return
+      family%drafts(set)%state = 1
+      members = family%drafts(set)%members(:family%drafts(set)%n_members)
+      do k = 1, family%drafts(set)%n_parts
+         part = family%drafts(set)%parts(k)
+         if (family%drafts(part)%state == 1) then
+            call fail_at(error, source, family%drafts(set)%part_places(k), &
+               'set loop: '//trim(family%sets(part)%name)//' contains itself', &
+               cure='a set must not contain itself, directly or through others')
+            return
+         end if
+         call resolve(family, part, source, error)
+         if (allocated(error)) return
+         members = [members, family%sets(part)%members]
+      end do
+      call sort_unique(members)
+      call move_alloc(members, family%sets(set)%members)
+      family%drafts(set)%state = 2
+   end subroutine resolve
+
+   !> The nodes that a field names: one by its id, or those of a set.
+   subroutine find_nodes(model, fields, k, nodes, error)
+      type(model_type), intent(in) :: model
+      type(fields_type), intent(in) :: fields
+      integer, intent(in) :: k
+      integer, allocatable, intent(out) :: nodes(:)   !! indices
+      type(error_type), allocatable, intent(out) :: error
+      character(len=name_length) :: name
+      integer :: id, set
+
+      if (is_integer(fields, k)) then
+         call get_integer(fields, k, 'node id', id, model%source, error)
+         if (allocated(error)) return
+         nodes = [model%nodes%index_of%find(id)]
+         if (nodes(1) == 0) call fail_at(error, model%source, field_place(fields, k), &
+               'no such node: '//to_text(id), cure='define it with *NODE')
+         return
+      end if
+      call get_name(fields, k, 'node id or set', name, model%source, error)
+      if (allocated(error)) return
+      call find_node_set(model, name, field_place(fields, k), set, error)
+      if (allocated(error)) return
+      nodes = model%node_sets(set)%members
+   end subroutine find_nodes
+
+   !> Index of a node set by its name.
+   subroutine find_node_set(model, name, place, set, error)
+      type(model_type), intent(in) :: model
+      character(len=*), intent(in) :: name
+      type(place_type), intent(in) :: place
+      integer, intent(out) :: set
+      type(error_type), allocatable, intent(out) :: error
+
+      set = find_named(model%node_sets, name)
+      if (set == 0) call fail_at(error, model%source, place, 'no such node set: '//trim(name), &
+            cure='define it with *NSET; '//advice(name, model%node_sets%name))
+   end subroutine find_node_set
+
+   !> Index of an element set by its name.
+   subroutine find_element_set(model, name, place, set, error)
+      type(model_type), intent(in) :: model
+      character(len=*), intent(in) :: name
+      type(place_type), intent(in) :: place
+      integer, intent(out) :: set
+      type(error_type), allocatable, intent(out) :: error
+
+      set = find_named(model%element_sets, name)
+      if (set == 0) call fail_at(error, model%source, place, 'no such element set: '//trim(name), &
+            cure='define it with *ELSET; '//advice(name, model%element_sets%name))
+   end subroutine find_element_set
+
+end module set_reader

@@ -1,0 +1,167 @@
+!> Files to lines: the text of the deck as it stands, ready to be shown in messages.
+module source_reader
+   use, intrinsic :: iso_fortran_env, only: int64
+   use errors, only: error_type, new_error, status_file
+   use places, only: source_type, source_file_type, source_line_type, place_type, fail_at
+   implicit none
+   private
+
+   public :: add_file, add_note
+
+   integer, parameter :: code_tab = 9, code_lf = 10, code_cr = 13
+
+contains
+
+   !> Reads a file and appends it to the source; a byte that is no text is an error.
+   subroutine add_file(source, path, error)
+      type(source_type), intent(inout) :: source
+      character(len=*), intent(in) :: path
+      type(error_type), allocatable, intent(out) :: error   !! status_file if it cannot be read
+      character(len=:), allocatable :: content
+
+      call read_content(path, content, error)
+      if (allocated(error)) return
+      call make_room(source)
+      source%n_files = source%n_files + 1
+      source%files(source%n_files)%name = path
+      call split_lines(source%files(source%n_files), content)
+      call check_bytes(source, source%n_files, error)
+   end subroutine add_file
+
+   !> The bytes of a file, a byte order mark dropped.
+   subroutine read_content(path, content, error)
+      character(len=*), intent(in) :: path
+      character(len=:), allocatable, intent(out) :: content
+      type(error_type), allocatable, intent(out) :: error
+      character(len=*), parameter :: byte_order_mark = char(239)//char(187)//char(191)
+      character(len=200) :: reason
+      integer(int64) :: length
+      integer :: unit, status
+
+      open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
+         action='read', iostat=status, iomsg=reason)
+      if (status /= 0) then
+         call new_error(error, status_file, "cannot open '"//path//"': "//trim(reason))
+         return
+      end if
+      inquire (unit=unit, size=length)
+      if (length < 0 .or. length > int(huge(unit) - 1, int64)) then
+         close (unit)
+         call new_error(error, status_file, "cannot read '"//path//"': not a file of text")
+         return
+      end if
+      allocate (character(len=int(length)) :: content)
+      if (length > 0) read (unit, iostat=status, iomsg=reason) content
+      close (unit)
+      if (status /= 0) then
+         call new_error(error, status_file, "cannot read '"//path//"': "//trim(reason))
+      else if (length >= 3) then
+         if (content(1:3) == byte_order_mark) content = content(4:)
+      end if
+   end subroutine read_content
+
+   !> Cuts at line feeds; a carriage return before one goes too.
+   pure subroutine split_lines(file, content)
+      type(source_file_type), intent(inout) :: file
+      character(len=*), intent(in) :: content
+      integer :: i, n, start
+
+      n = 0
+      do i = 1, len(content)
+         if (iachar(content(i:i)) == code_lf) n = n + 1
+      end do
+      if (len(content) > 0) then
+         if (iachar(content(len(content):)) /= code_lf) n = n + 1
+      end if
+      allocate (file%lines(n))
+      file%n_lines = 0
+      start = 1
+      do i = 1, len(content)
+         if (iachar(content(i:i)) /= code_lf) cycle
+         call keep_line(file, content(start:i - 1))
+         start = i + 1
+      end do
+      if (start <= len(content)) call keep_line(file, content(start:))
+   end subroutine split_lines
+
+   pure subroutine keep_line(file, line)
+      type(source_file_type), intent(inout) :: file
+      character(len=*), intent(in) :: line
+      integer :: last
+
+      last = len(line)
+      if (last > 0) then
+         if (iachar(line(last:last)) == code_cr) last = last - 1
+      end if
+      file%n_lines = file%n_lines + 1
+      file%lines(file%n_lines)%text = line(:last)
+   end subroutine keep_line
+
+   !> Refuses control bytes: the file is no text.
+   pure subroutine check_bytes(source, file, error)
+      type(source_type), intent(in) :: source
+      integer, intent(in) :: file
+      type(error_type), allocatable, intent(out) :: error
+      type(place_type) :: place
+      integer :: i, column
+
+      do i = 1, source%files(file)%n_lines
+         column = first_control_byte(source%files(file)%lines(i)%text)
+         if (column == 0) cycle
+         place%file = file
+         place%line = i
+         place%column = column
+         place%length = 1
+         call fail_at(error, source, place, 'this is not a text file: it holds a control byte', &
+            cure='decks are plain text (ASCII or UTF-8)')
+         return
+      end do
+   end subroutine check_bytes
+
+   pure function first_control_byte(line) result(column)
+      character(len=*), intent(in) :: line
+      integer :: column
+      integer :: code
+
+      do column = 1, len(line)
+         code = iachar(line(column:column))
+         if ((code < 32 .and. code /= code_tab) .or. code == 127) return
+      end do
+      column = 0
+   end function first_control_byte
+
+   !> Room for one more file; the lines of those present are moved, not copied.
+   pure subroutine make_room(source)
+      type(source_type), intent(inout) :: source
+      type(source_file_type), allocatable :: files(:)
+      integer :: i
+
+      if (.not. allocated(source%files)) allocate (source%files(4))
+      if (source%n_files < size(source%files)) return
+      allocate (files(2*size(source%files)))
+      do i = 1, source%n_files
+         call move_alloc(source%files(i)%name, files(i)%name)
+         call move_alloc(source%files(i)%lines, files(i)%lines)
+         files(i)%n_lines = source%files(i)%n_lines
+      end do
+      call move_alloc(files, source%files)
+   end subroutine make_room
+
+   !> Appends a remark to the notes for the log.
+   pure subroutine add_note(notes, remark)
+      type(source_line_type), allocatable, intent(inout) :: notes(:)
+      character(len=*), intent(in) :: remark
+      type(source_line_type), allocatable :: longer(:)
+      integer :: i, n
+
+      n = 0
+      if (allocated(notes)) n = size(notes)
+      allocate (longer(n + 1))
+      do i = 1, n
+         call move_alloc(notes(i)%text, longer(i)%text)
+      end do
+      longer(n + 1)%text = remark
+      call move_alloc(longer, notes)
+   end subroutine add_note
+
+end module source_reader

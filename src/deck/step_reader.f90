@@ -1,0 +1,275 @@
+!> `*STEP` to `*END STEP`: procedure, loads and requests.
+module step_reader
+   use kinds, only: wp
+   use errors, only: error_type
+   use places, only: place_type, source_type, fail_at
+   use steps, only: step_type, procedure_static, procedure_dynamic
+   use histories, only: gravity_type, base_motion_type
+   use properties, only: name_length
+   use mesh, only: element_mass, element_gap, scheme_explicit, mass_consistent
+   use model, only: model_type
+   use cards, only: deck_type, card_type, get_word, get_name_parameter, get_integer_parameter
+   use cards, only: get_real_parameter, parameter_place, has_parameter
+   use fields, only: fields_type, split_line, check_count, only_line, field_place, field_text
+   use fields, only: is_given, get_reals, get_name, get_real
+   use condition_reader, only: read_boundaries, read_initial_conditions, read_loads
+   use amplitude_reader, only: find_amplitude
+   use request_reader, only: read_requests
+   use load_reader, only: read_gravity, read_base_motions
+   use words, only: word_length
+   use text, only: to_text
+   implicit none
+   private
+
+   public :: read_steps
+
+contains
+
+   subroutine read_steps(model, deck, error)
+      type(model_type), intent(inout) :: model
+      type(deck_type), intent(in) :: deck
+      type(error_type), allocatable, intent(out) :: error
+      integer :: s, n
+
+      n = 0
+      if (deck%n_cards > 0) n = maxval(deck%cards(:deck%n_cards)%step)
+      allocate (model%steps(n))
+      do s = 1, n
+         call read_step(model, s, deck, error)
+         if (allocated(error)) return
+      end do
+   end subroutine read_steps
+
+   subroutine read_step(model, s, deck, error)
+      type(model_type), intent(inout) :: model
+      integer, intent(in) :: s
+      type(deck_type), intent(in) :: deck
+      type(error_type), allocatable, intent(out) :: error
+      type(step_type) :: step
+
+      call read_head(step, model, s, deck, error)
+      if (allocated(error)) return
+      call read_boundaries(step%boundaries, model, deck, s, error)
+      if (allocated(error)) return
+      call read_initial_conditions(step%initial_displacements, step%initial_velocities, model, &
+         deck, s, error)
+      if (allocated(error)) return
+      call read_loads(step%loads, model, deck, s, error)
+      if (allocated(error)) return
+      call read_gravity(step%gravity, model, deck, s, error)
+      if (allocated(error)) return
+      call read_base_motions(step%base_motions, model, deck, s, error)
+      if (allocated(error)) return
+      call read_op(step%new_boundaries, 'BOUNDARY', model, deck, s, error)
+      if (allocated(error)) return
+      call read_op(step%new_loads, 'CLOAD', model, deck, s, error)
+      if (allocated(error)) return
+      call read_op(step%new_gravity, 'DLOAD', model, deck, s, error)
+      if (allocated(error)) return
+      model%steps(s) = step
+      call read_requests(model, deck, s, error)
+   end subroutine read_step
+
+   !> *STEP itself and the one procedure card.
+   subroutine read_head(step, model, s, deck, error)
+      type(step_type), intent(inout) :: step
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: s
+      type(deck_type), intent(in) :: deck
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i, n
+
+      n = 0
+      do i = 1, deck%n_cards
+         if (deck%cards(i)%step /= s) cycle
+         select case (deck%cards(i)%keyword)
+         case ('STEP')
+            step%place = deck%cards(i)%place
+            call get_name_parameter(deck%cards(i), 'NAME', step%name, model%source, error)
+            if (allocated(error)) return
+            call get_integer_parameter(deck%cards(i), 'INC', 1, step%max_increments, &
+               model%source, error)
+         case ('STATIC', 'DYNAMIC')
+            n = n + 1
+            call read_procedure(step, n, model, deck, deck%cards(i), error)
+         end select
+         if (allocated(error)) return
+      end do
+      if (n == 0) call fail_at(error, model%source, step%place, 'this step has no procedure', &
+            cure='add *DYNAMIC, DIRECT or *STATIC with its line dt, T')
+   end subroutine read_head
+
+   subroutine read_procedure(step, n, model, deck, card, error)
+      type(step_type), intent(inout) :: step
+      integer, intent(in) :: n   !! procedure cards of this step so far
+      type(model_type), intent(in) :: model
+      type(deck_type), intent(in) :: deck
+      type(card_type), intent(in) :: card
+      type(error_type), allocatable, intent(out) :: error
+
+      if (n > 1) then
+         call fail_at(error, model%source, card%place, 'this step has a procedure already', &
+            cure='write one of *STATIC and *DYNAMIC in a step')
+         return
+      end if
+      step%procedure_place = card%place
+      step%time_place = card%place
+      step%direct = has_parameter(card, 'DIRECT')
+      step%procedure = procedure_static
+      if (card%keyword == 'DYNAMIC') then
+         step%procedure = procedure_dynamic
+         call read_dynamic(step, model, card, error)
+         if (allocated(error)) return
+      end if
+      call read_times(step, deck, card, model%source, error)
+   end subroutine read_procedure
+
+   !> dt, T; a static step has 1, 1 without the line.
+   subroutine read_times(step, deck, card, source, error)
+      type(step_type), intent(inout) :: step
+      type(deck_type), intent(in) :: deck
+      type(card_type), intent(in) :: card
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      type(fields_type) :: fields
+      real(wp) :: times(2)
+
+      if (card%last < card%first) then
+         step%dt = 1.0_wp
+         step%duration = 1.0_wp
+         if (step%procedure == procedure_dynamic) call fail_at(error, source, card%place, &
+               '*DYNAMIC needs a line with the time step and the duration', &
+               cure='a line is: dt, T')
+         return
+      end if
+      call only_line(fields, deck, card, 2, source, error)
+      if (allocated(error)) return
+      call get_reals(fields, 1, 2, 'dt, T', times, source, error)
+      if (allocated(error)) return
+      step%dt = times(1)
+      step%duration = times(2)
+      step%time_place = fields%place
+      if (step%dt <= 0.0_wp) then
+         call fail_at(error, source, field_place(fields, 1), 'the time step must be positive', &
+            cure='a line is: dt, T')
+      else if (step%duration < step%dt) then
+         call fail_at(error, source, field_place(fields, 2), &
+            'the duration must not be shorter than the time step', cure='a line is: dt, T')
+      end if
+   end subroutine read_times
+
+   !> The integration parameters of *DYNAMIC.
+   subroutine read_dynamic(step, model, card, error)
+      type(step_type), intent(inout) :: step
+      type(model_type), intent(in) :: model
+      type(card_type), intent(in) :: card
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), parameter :: third = 1.0_wp/3.0_wp
+
+      if (.not. step%direct) then
+         call fail_at(error, model%source, card%place, &
+            'automatic increments are known but do not work yet', cure='write *DYNAMIC, DIRECT')
+         return
+      end if
+      step%explicit = has_parameter(card, 'EXPLICIT')
+      call get_real_parameter(card, 'ALPHA', step%alpha, model%source, error)
+      if (allocated(error)) return
+      if (step%alpha < -third - epsilon(third) .or. step%alpha > 0.0_wp) then
+         call fail_at(error, model%source, parameter_place(card, 'ALPHA'), &
+            'ALPHA is out of range', cure='write a number from -1/3 to 0')
+         return
+      end if
+      step%gamma = 0.5_wp - step%alpha
+      step%beta = 0.25_wp*(1.0_wp - step%alpha)**2
+      if (step%explicit) step%beta = 0.0_wp
+      call get_real_parameter(card, 'GAMMA', step%gamma, model%source, error)
+      if (allocated(error)) return
+      call get_real_parameter(card, 'BETA', step%beta, model%source, error)
+      if (allocated(error)) return
+      if (step%gamma < 0.5_wp) then
+         call fail_at(error, model%source, parameter_place(card, 'GAMMA'), &
+            'GAMMA below 1/2 is unstable', cure='write GAMMA >= 0.5')
+      else if (step%beta < 0.0_wp .or. step%beta > 0.5_wp) then
+         call fail_at(error, model%source, parameter_place(card, 'BETA'), &
+            'BETA is out of range', cure='write a number from 0 to 0.5')
+      else
+         call check_schemes(step, model, card, error)
+      end if
+   end subroutine read_dynamic
+
+   !> beta = 0 and explicit elements belong together.
+   subroutine check_schemes(step, model, card, error)
+      type(step_type), intent(in) :: step
+      type(model_type), intent(in) :: model
+      type(card_type), intent(in) :: card
+      type(error_type), allocatable, intent(out) :: error
+      integer :: e
+
+      if (step%explicit) then
+         if (step%beta > 0.0_wp) then
+            call fail_at(error, model%source, parameter_place(card, 'BETA'), &
+               'EXPLICIT means beta = 0', cure='remove BETA, or EXPLICIT')
+         else if (abs(step%alpha) > 0.0_wp) then
+            call fail_at(error, model%source, parameter_place(card, 'ALPHA'), &
+               'ALPHA means nothing with EXPLICIT', cure='remove ALPHA, or EXPLICIT')
+         else if (any(model%groups%mass == mass_consistent)) then
+            call fail_at(error, model%source, parameter_place(card, 'EXPLICIT'), &
+               'an element group has MASS=CONSISTENT, explicit steps need lumped masses', &
+               cure='write MASS=LUMPED, or remove EXPLICIT')
+         end if
+      else if (step%beta <= 0.0_wp) then
+         e = first_implicit(model)
+         if (e > 0) call fail_at(error, model%source, parameter_place(card, 'BETA'), &
+               'beta = 0 with implicit elements: element '//to_text(model%elements%id(e)), &
+               cure='write BETA > 0, or EXPLICIT, or put the elements into explicit groups')
+      end if
+   end subroutine check_schemes
+
+   !> The first element with stiffness or damping that is in no explicit group, 0 if none is.
+   pure function first_implicit(model) result(e)
+      type(model_type), intent(in) :: model
+      integer :: e
+      logical, allocatable :: implicit_one(:)
+      integer :: i
+
+      allocate (implicit_one(model%elements%n))
+      implicit_one = model%elements%kind /= element_mass .and. model%elements%kind /= element_gap
+      do i = 1, size(model%groups)
+         if (model%groups(i)%scheme == scheme_explicit) &
+            implicit_one(model%element_sets(model%groups(i)%set)%members) = .false.
+      end do
+      do e = 1, model%elements%n
+         if (implicit_one(e)) return
+      end do
+      e = 0
+   end function first_implicit
+
+   !> OP=NEW on the cards of a keyword; all of one step must agree.
+   subroutine read_op(is_new, keyword, model, deck, s, error)
+      logical, intent(out) :: is_new
+      character(len=*), intent(in) :: keyword
+      type(model_type), intent(in) :: model
+      type(deck_type), intent(in) :: deck
+      integer, intent(in) :: s
+      type(error_type), allocatable, intent(out) :: error
+      character(len=word_length), parameter :: ops(*) = [character(len=word_length) :: 'MOD', 'NEW']
+      integer :: i, n, choice
+
+      is_new = .false.
+      n = 0
+      do i = 1, deck%n_cards
+         if (deck%cards(i)%step /= s .or. deck%cards(i)%keyword /= keyword) cycle
+         call get_word(deck%cards(i), 'OP', ops, choice, model%source, error)
+         if (allocated(error)) return
+         n = n + 1
+         if (n > 1 .and. (is_new .neqv. choice == 2)) then
+            call fail_at(error, model%source, parameter_place(deck%cards(i), 'OP'), &
+               'the *'//keyword//' cards of a step must have the same OP', &
+               cure='write OP=NEW on all of them or on none')
+            return
+         end if
+         is_new = choice == 2
+      end do
+   end subroutine read_op
+
+end module step_reader

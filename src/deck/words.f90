@@ -1,0 +1,98 @@
+!> Words of the deck: comparison without case and blanks, and advice on misspelt ones.
+module words
+   use text, only: upper_case
+   implicit none
+   private
+
+   public :: word_length, squeezed, find_word, advice, is_blank
+
+   !> Room for one keyword, parameter or value.
+   integer, parameter :: word_length = 32
+
+contains
+
+   !> Upper case without blanks and tabs: the form in which words are compared.
+   pure function squeezed(string) result(word)
+      character(len=*), intent(in) :: string
+      character(len=:), allocatable :: word
+      character(len=len(string)) :: buffer
+      integer :: i, n
+
+      n = 0
+      do i = 1, len(string)
+         if (is_blank(string(i:i))) cycle
+         n = n + 1
+         buffer(n:n) = string(i:i)
+      end do
+      word = upper_case(buffer(:n))
+   end function squeezed
+
+   !> True for a blank or a tab.
+   elemental function is_blank(letter) result(blank)
+      character(len=1), intent(in) :: letter
+      logical :: blank
+
+      blank = letter == ' ' .or. iachar(letter) == 9
+   end function is_blank
+
+   !> Position of a word in a list, 0 if it is not there.
+   pure function find_word(word, list) result(position)
+      character(len=*), intent(in) :: word, list(:)
+      integer :: position
+      character(len=:), allocatable :: wanted
+
+      wanted = squeezed(word)
+      do position = 1, size(list)
+         if (squeezed(list(position)) == wanted) return
+      end do
+      position = 0
+   end function find_word
+
+   !> "did you mean X? allowed: A, B, C".
+   pure function advice(word, list) result(string)
+      character(len=*), intent(in) :: word, list(:)
+      character(len=:), allocatable :: string
+      integer :: i, nearest, distance, least
+
+      nearest = 0
+      least = min(3, 1 + len(squeezed(word))/3)
+      do i = 1, size(list)
+         distance = edit_distance(squeezed(word), squeezed(list(i)))
+         if (distance >= least) cycle
+         least = distance
+         nearest = i
+      end do
+      string = ''
+      if (nearest > 0) string = "did you mean '"//trim(list(nearest))//"'? "
+      if (size(list) == 0) return
+      string = string//'allowed: '//trim(list(1))
+      do i = 2, size(list)
+         string = string//', '//trim(list(i))
+      end do
+   end function advice
+
+   !> Letters to insert, drop or replace to make one word the other (Levenshtein).
+   pure function edit_distance(a, b) result(distance)
+      character(len=*), intent(in) :: a, b
+      integer :: distance
+      integer :: row(0:len(b)), i, j, diagonal, above
+
+      if (abs(len(a) - len(b)) > 3) then
+         distance = max(len(a), len(b))
+         return
+      end if
+      row = [(j, j=0, len(b))]
+      do i = 1, len(a)
+         diagonal = row(0)
+         row(0) = i
+         do j = 1, len(b)
+            above = row(j)
+            if (a(i:i) /= b(j:j)) diagonal = diagonal + 1
+            row(j) = min(diagonal, above + 1, row(j - 1) + 1)
+            diagonal = above
+         end do
+      end do
+      distance = row(len(b))
+   end function edit_distance
+
+end module words
