@@ -35,8 +35,30 @@ def compare_frame(group, grid, step):
     return complaints
 
 
+def compare_lists(path):
+    """Messages about lists of frames with too few or too many entries, on which VTK may crash."""
+    with h5py.File(path, "r") as file:
+        steps = file["VTKHDF/Steps"]
+        expected = int(steps.attrs["NSteps"])
+        lengths = {}
+        steps.visititems(
+            lambda name, item: lengths.update({name: len(item)})
+            if isinstance(item, h5py.Dataset)
+            else None
+        )
+    complaints = [
+        f"{path}: NSteps is {expected}, Steps/{name} has {length} entries"
+        for name, length in lengths.items()
+        if length != expected
+    ]
+    return complaints if expected > 0 else [*complaints, f"{path}: no frames"]
+
+
 def check(path):
     """Messages about all that is wrong with the file, and the number of frames."""
+    complaints = compare_lists(path)
+    if complaints:
+        return complaints, 0
     reader = vtkHDFReader()
     if not reader.CanReadFile(path):
         return [f"{path}: VTK cannot read it"], 0
@@ -46,7 +68,6 @@ def check(path):
     times = reader.GetOutputInformation(0).Get(key) or ()
     with h5py.File(path, "r") as file:
         group = file["VTKHDF"]
-        complaints = []
         if not np.array_equal(times, group["Steps/Values"][: group["Steps"].attrs["NSteps"]]):
             complaints.append(f"VTK finds the times {times}")
         for step in range(len(times)):

@@ -1,0 +1,179 @@
+"""A moving picture of a run: animate.py RESULT.h5 [--scale 1] [--every 1] [--fps 25] [-o x.mp4]
+
+Draws the frames of /VTKHDF in the x-y plane: points + scale * U. Rigid planes appear if the file
+has them, and a flash when an impact has just happened. Writes a GIF, or with
+-o NAME.mp4 an MP4 film (needs ffmpeg).
+"""
+
+import os
+
+import numpy as np
+from carom_results import BLACK, BLUE, RED, SKY, Results, ScriptError, make_parser, plt, run
+from matplotlib import animation
+from matplotlib.collections import LineCollection, PolyCollection
+
+VERTEX, LINE = 1, 3
+FACES = {5: [0, 1, 2], 9: [0, 1, 2, 3], 22: [0, 3, 1, 4, 2, 5], 23: [0, 4, 1, 5, 2, 6, 3, 7]}
+MOST_FRAMES = 400
+FLASH = 3  # pictures that an impact stays visible
+
+
+class Film:
+    """The mesh, its frames and what else is to be seen."""
+
+    def __init__(self, results, scale):
+        self.file = results.file
+        self.scale = scale
+        grid = self.file.get("VTKHDF")
+        if grid is None or "PointData/U" not in grid or "Steps" not in grid:
+            raise ScriptError(f"'{results.path}' has no frames of U in /VTKHDF (*NODE FILE with U)")
+        self.points = grid["Points"][()]
+        self.n_frames = int(grid["Steps"].attrs["NSteps"])
+        if self.n_frames == 0:
+            raise ScriptError(f"'{results.path}' has no frames yet")
+        self.times = grid["Steps/Values"][: self.n_frames]
+        self.begins = grid["Steps/PointDataOffsets/U"][: self.n_frames]
+        self.values = grid["PointData/U"]
+        self.events = results.events()
+        planes = self.file.get("model/rigid_planes")
+        self.planes = np.zeros((0, 6)) if planes is None else np.atleast_2d(planes[()])
+        types, offsets = grid["Types"][()], grid["Offsets"][()]
+        connectivity = grid["Connectivity"][()]
+        cells = [connectivity[a:b] for a, b in zip(offsets[:-1], offsets[1:])]
+        self.lines = [c[:2] for c, kind in zip(cells, types) if kind == LINE]
+        self.faces = [c[FACES[kind]] for c, kind in zip(cells, types) if kind in FACES]
+        self.vertices = [c[0] for c, kind in zip(cells, types) if kind == VERTEX]
+
+    def place(self, frame):
+        """The x and y of all points in a frame."""
+        begin = int(self.begins[frame])
+        u = self.values[begin : begin + len(self.points)]
+        return (self.points + self.scale * u)[:, :2]
+
+    def hits(self, frame, before):
+        """Impacts since a frame before."""
+        if frame == 0 or len(self.events["time"]) == 0:
+            return False
+        time, kind = self.events["time"], self.events["kind"]
+        return bool(
+            np.any((time > self.times[before]) & (time <= self.times[frame]) & (kind == "impact"))
+        )
+
+    def limits(self, frames):
+        """The corners of all that is to be seen, with a margin."""
+        looked_at = frames[:: max(1, len(frames) // 60)] + [frames[-1]]
+        low = np.min([self.place(frame).min(axis=0) for frame in looked_at], axis=0)
+        high = np.max([self.place(frame).max(axis=0) for frame in looked_at], axis=0)
+        for point, normal in zip(self.planes[:, :3], self.planes[:, 3:]):
+            axis = int(np.argmax(np.abs(normal[:2])))
+            if np.abs(normal[axis]) > 0.99 * np.linalg.norm(normal):  # it is along x or y: show it
+                low[axis] = min(low[axis], point[axis])
+                high[axis] = max(high[axis], point[axis])
+        size = max((high - low).max(), 1e-12)
+        thin = high - low < 0.15 * size
+        low, high = low - 0.06 * size, high + 0.06 * size
+        low[thin] -= 0.08 * size
+        high[thin] += 0.08 * size
+        return low, high
+
+
+def draw_planes(axes, film, low, high):
+    """Each rigid plane as an edge, with a strip on its solid side."""
+    reach = np.linalg.norm(high - low)
+    for point, normal in zip(film.planes[:, :2], film.planes[:, 3:5]):
+        length = np.linalg.norm(normal)
+        if length < 1e-9:
+            continue  # faces along z
+        normal = normal / length
+        along = np.array([-normal[1], normal[0]])
+        foot = point + along * np.dot(0.5 * (low + high) - point, along)
+        ends = np.array([foot - 2 * reach * along, foot + 2 * reach * along])
+        solid = np.vstack((ends, ends[::-1] - 0.03 * reach * normal))
+        axes.fill(*solid.T, color="0.8", zorder=0)
+        axes.plot(*ends.T, color="0.4", lw=1.5, zorder=1)
+
+
+class Picture:
+    """The drawn frame, updated in place."""
+
+    def __init__(self, film, frames):
+        self.film = film
+        low, high = film.limits(frames)
+        width, height = high - low
+        aspect = min(max(height / width, 0.2), 1.2)
+        tall = 7.6 * aspect + 1.2
+        self.figure, self.axes = plt.subplots(figsize=(7.6, tall), dpi=90)
+        self.figure.subplots_adjust(left=0.12, right=0.97, top=0.88, bottom=0.62 / tall)
+        self.axes.set_xlim(low[0], high[0])
+        self.axes.set_ylim(low[1], high[1])
+        self.axes.set_aspect("equal")
+        self.axes.set_xlabel("x")
+        self.axes.set_ylabel("y")
+        self.axes.grid(False)
+        draw_planes(self.axes, film, low, high)
+        few = len(film.points) <= 60
+        self.faces = PolyCollection([], facecolor=SKY, edgecolor=BLACK, lw=0.6 if few else 0.25)
+        self.lines = LineCollection([], color=BLUE, lw=2.5)
+        self.axes.add_collection(self.faces)
+        self.axes.add_collection(self.lines)
+        only_chain = not film.faces
+        shown = np.arange(len(film.points)) if only_chain and few else np.array(film.vertices, int)
+        self.shown = shown
+        size = 90 if len(shown) <= 5 else 30 if len(shown) <= 20 else 8
+        self.dots = self.axes.scatter([], [], s=size, color=BLUE, edgecolor=BLACK, zorder=3)
+        self.title = self.axes.set_title("")
+
+    def show(self, frame, before):
+        """Draws one frame."""
+        place = self.film.place(frame)
+        self.faces.set_verts([place[face] for face in self.film.faces])
+        self.lines.set_segments([place[line] for line in self.film.lines])
+        self.dots.set_offsets(place[self.shown] if len(self.shown) else np.empty((0, 2)))
+        hit = self.film.hits(frame, before)
+        self.dots.set_facecolor(RED if hit else BLUE)
+        for spine in self.axes.spines.values():
+            spine.set_edgecolor(RED if hit else BLACK)
+            spine.set_linewidth(3.0 if hit else 0.8)
+        self.title.set_text(f"time {self.film.times[frame]:.4g}" + ("   impact" if hit else ""))
+        self.title.set_color(RED if hit else BLACK)
+
+
+def writer_for(path, fps):
+    """The writer that the ending of the file asks for."""
+    if path.lower().endswith(".gif"):
+        return animation.PillowWriter(fps=fps)
+    if path.lower().endswith(".mp4"):
+        if not animation.FFMpegWriter.isAvailable():
+            raise ScriptError("an MP4 film needs ffmpeg, which is not installed; a .gif does not")
+        return animation.FFMpegWriter(fps=fps)
+    raise ScriptError(f"'{path}' should end in .gif or .mp4")
+
+
+def main():
+    parser = make_parser(__doc__)
+    parser.add_argument("result", help="result file of carom")
+    parser.add_argument("--scale", type=float, default=1.0, help="factor on the displacements (1)")
+    parser.add_argument("--every", type=int, help=f"every n-th frame (so that <= {MOST_FRAMES})")
+    parser.add_argument("--fps", type=float, default=25.0, help="pictures a second (25)")
+    given = parser.parse_args()
+    if given.fps <= 0 or (given.every is not None and given.every < 1):
+        raise ScriptError("--fps and --every must be positive")
+    with Results(given.result) as results:
+        path = results.output(given.output, ".gif")
+        writer = writer_for(path, given.fps)
+        film = Film(results, given.scale)
+        every = given.every or -(-film.n_frames // MOST_FRAMES)
+        frames = list(range(0, film.n_frames, every))
+        picture = Picture(film, frames)
+        try:
+            with writer.saving(picture.figure, path, dpi=90):
+                for before, frame in zip([0] * FLASH + frames, frames):
+                    picture.show(frame, before)
+                    writer.grab_frame()
+        except OSError as error:
+            raise ScriptError(f"cannot write '{path}': {error}") from None
+        print(f"{path}: {len(frames)} frames, {os.path.getsize(path) / 1e6:.1f} MB")
+
+
+if __name__ == "__main__":
+    run(main)
