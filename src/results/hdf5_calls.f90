@@ -213,19 +213,20 @@ contains
       integer, intent(in) :: n_components   !! 0: a list; n: rows of n values
       integer, intent(in) :: chunk_rows
       logical, intent(out) :: failed
-      integer(hsize_t), allocatable :: dims(:), most(:), chunk(:)
+      integer(hsize_t), dimension(2) :: dims, most, chunk
       integer(hid_t) :: space, dataset, properties, links
-      integer :: status(9)
+      integer :: status(9), rank
 
-      dims = [0_hsize_t]
-      if (n_components > 0) dims = [int(n_components, hsize_t), 0_hsize_t]
+      rank = merge(2, 1, n_components > 0)
+      dims = int(n_components, hsize_t)
       most = dims
       chunk = dims
-      most(size(dims)) = h5s_unlimited_f
-      chunk(size(dims)) = int(chunk_rows, hsize_t)
-      call h5screate_simple_f(size(dims), dims, space, status(1), maxdims=most)
+      dims(rank) = 0
+      most(rank) = h5s_unlimited_f
+      chunk(rank) = int(chunk_rows, hsize_t)
+      call h5screate_simple_f(rank, dims, space, status(1), maxdims=most)
       call h5pcreate_f(h5p_dataset_create_f, properties, status(2))
-      call h5pset_chunk_f(properties, size(chunk), chunk, status(3))
+      call h5pset_chunk_f(properties, rank, chunk, status(3))
       call link_property(links, status(4))
       call h5dcreate_f(file, path, storage%in_file, space, dataset, status(5), &
             dcpl_id=properties, lcpl_id=links)
@@ -251,7 +252,8 @@ contains
       call get_dims(file, path, dims, failed)
       if (failed .or. n_values == 0) return
       rank = size(dims)
-      allocate (start(rank), source=0_hsize_t)
+      allocate (start(rank), count(rank))
+      start = 0
       start(rank) = dims(rank)
       count = dims
       count(rank) = n_values/product(dims(:rank - 1))

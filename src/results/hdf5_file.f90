@@ -155,7 +155,7 @@ contains
       type(storage_type) :: storage
       logical :: failed
 
-      bytes = to_bytes([value])
+      call to_bytes([value], bytes)
       storage = text_storage(size(bytes))
       call put_dataset(self%id, path, storage, [integer(hsize_t) ::], c_loc(bytes), failed)
       call close_storage(storage)
@@ -170,7 +170,7 @@ contains
       type(storage_type) :: storage
       logical :: failed
 
-      bytes = to_bytes(values)
+      call to_bytes(values, bytes)
       storage = text_storage(max(1, len(values)))
       call put_dataset(self%id, path, storage, shape(values, hsize_t), c_loc(bytes), failed)
       call close_storage(storage)
@@ -226,7 +226,7 @@ contains
       type(storage_type) :: storage
       logical :: failed
 
-      bytes = to_bytes([value])
+      call to_bytes([value], bytes)
       storage = text_storage(size(bytes))
       call put_attribute(self%id, object, name, storage, [integer(hsize_t) ::], c_loc(bytes), &
             failed)
@@ -309,7 +309,7 @@ contains
       character(kind=c_char), allocatable, target :: bytes(:)
       type(storage_type) :: storage
 
-      bytes = to_bytes(values)
+      call to_bytes(values, bytes)
       storage = text_storage(max(1, len(values)))
       call append_values(self, path, storage, size(values), c_loc(bytes), error)
       call close_storage(storage)
@@ -343,14 +343,14 @@ contains
    end subroutine describe
 
    !> The characters of the texts, one after the other; a blank for a text of no length.
-   pure function to_bytes(texts) result(bytes)
+   pure subroutine to_bytes(texts, bytes)
       character(len=*), intent(in) :: texts(:)
-      character(kind=c_char), allocatable :: bytes(:)
+      character(kind=c_char), allocatable, target, intent(out) :: bytes(:)
 
       allocate (bytes(max(1, len(texts))*size(texts)))
       bytes = c_char_' '
       if (len(texts) > 0) bytes = transfer(texts, bytes)
-   end function to_bytes
+   end subroutine to_bytes
 
    subroutine write_error(self, object, error)
       class(hdf5_file_type), intent(in) :: self
