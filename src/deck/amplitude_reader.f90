@@ -40,7 +40,7 @@ contains
       type(card_type), intent(in) :: card
       type(error_type), allocatable, intent(out) :: error
       character(len=word_length), parameter :: times(*) = [character(len=word_length) :: &
-         'STEP TIME', 'TOTAL TIME']
+            'STEP TIME', 'TOTAL TIME']
       type(fields_type) :: fields
       integer :: choice, line, k
 
@@ -49,8 +49,8 @@ contains
          if (allocated(error)) return
          if (find_named(model%amplitudes(:n - 1), amplitude%name) > 0) then
             call fail_at(error, model%source, parameter_place(card, 'NAME'), &
-               "amplitude '"//trim(amplitude%name)//"' is defined twice", &
-               cure='give every amplitude its own name')
+                  "amplitude '"//trim(amplitude%name)//"' is defined twice", &
+                  cure='give every amplitude its own name')
             return
          end if
          call get_word(card, 'TIME', times, choice, model%source, error)
@@ -86,7 +86,7 @@ contains
       if (allocated(error)) return
       if (mod(fields%n, 2) /= 0) then
          call fail_at(error, model%source, field_place(fields, fields%n), &
-            'a time without its value', cure='a line is: up to 4 pairs of time, value')
+               'a time without its value', cure='a line is: up to 4 pairs of time, value')
          return
       end if
       do i = 1, fields%n, 2
@@ -97,8 +97,8 @@ contains
          if (k > 0) then
             if (t <= model%amplitudes(n)%t(k)) then
                call fail_at(error, model%source, field_place(fields, i), &
-                  'the times of an amplitude must increase', &
-                  cure='order the pairs by time, each time once')
+                     'the times of an amplitude must increase', &
+                     cure='order the pairs by time, each time once')
                return
             end if
          end if

@@ -7,7 +7,7 @@ module card_rules
    implicit none
    private
 
-   public :: find_rule, usage_of, check_card, is_note_card
+   public :: check_keyword, check_card, usage_of, is_note_card
 
    integer, parameter :: rule_length = 150
 
@@ -15,72 +15,64 @@ module card_rules
    !! Levels: model, step, both, any; note: accepted without effect; ~: does not work yet.
    !! Parameters: NAME takes no value, NAME= takes one, NAME=! must be given, ~: not yet.
    character(len=rule_length), parameter :: rules(*) = [character(len=rule_length) :: &
-      'HEADING;any;;text', &
-      'PARAMETER;any;;name = number', &
-      'INCLUDE;any;INPUT=!;-', &
-      'NODE;model;NSET=;id, x, y[, z]', &
-      'NSET;model;NSET=!/GENERATE;node ids and set names, or with GENERATE first, last[, step]', &
-      'ELSET;model;ELSET=!/GENERATE;element ids and set names, or with GENERATE '// &
-      'first, last[, step]', &
-      'ELEMENT;model;TYPE=!/ELSET=;id, nodes', &
-      'SOLID SECTION;model;ELSET=!/MATERIAL=!/~ELEMENTS=;area', &
-      'MATERIAL;model;NAME=!;-', &
-      'ELASTIC;model;TYPE=;E, nu', &
-      'DENSITY;model;;rho', &
-      'PLASTIC;~;HARDENING=;stress, plastic strain', &
-      'DAMPING;model;ALPHA=/BETA=;-', &
-      'SPRING;model;ELSET=!/NONLINEAR;the freedoms (none for SPRINGA), then '// &
-      'the stiffness, or with NONLINEAR lines of force, elongation', &
-      'DASHPOT;model;ELSET=!;the freedoms (none for DASHPOTA), then the coefficient', &
-      'MASS;model;ELSET=!;mass', &
-      'ELEMENT GROUP;model;ELSET=!/SCHEME=!/MASS=;-', &
-      'AMPLITUDE;model;NAME=!/TIME=;up to 4 pairs of time, value', &
-      'BOUNDARY;both;AMPLITUDE=/TYPE=/OP=;node or set, first dof[, last dof[, value]]', &
-      'BASE MOTION;step;AMPLITUDE=!/DOF=!;scale', &
-      'INITIAL CONDITIONS;both;TYPE=!;node or set, dof, value', &
-      'EQUATION;model;;number of terms, then up to 4 triples of node, dof, coefficient a line', &
-      'SURFACE;model;NAME=!/TYPE=!;nodes or node sets', &
-      'RIGID SURFACE;model;NAME=!/TYPE=!/AMPLITUDE=;a point x, y, z; then the outward normal '// &
-      'nx, ny, nz; with AMPLITUDE then dx, dy, dz, size', &
-      'SURFACE INTERACTION;model;NAME=!;-', &
-      'IMPACT;model;METHOD=/RESTITUTION=/RETURN=/SOLUTION=/BETA=/CAPTURE=/MAX EVENTS=/'// &
-      'EVENTS=/~STIFFNESS=;-', &
-      'FRICTION;~;;mu', &
-      'CONTACT PAIR;model;INTERACTION=!/TYPE=/PASSES=/~MASS=/~ADJUST?/~SMALL SLIDING;'// &
-      'slave surface, master surface', &
-      'GAP;model;ELSET=!/INTERACTION=!;clearance[, nx, ny, nz]', &
-      'STEP;any;INC=/NAME=/~NLGEOM?/~PERTURBATION;-', &
-      'END STEP;any;;-', &
-      'STATIC;step;DIRECT/~SOLVER=/~TOLERANCE=;dt, T', &
-      'DYNAMIC;step;DIRECT/EXPLICIT/GAMMA=/BETA=/ALPHA=/~ORDER=/~TOLERANCE=/~SOLVER=;dt, T', &
-      'FREQUENCY;~;SOLVER=;number of modes', &
-      'CLOAD;step;AMPLITUDE=/OP=;node or set, dof, force', &
-      'DLOAD;step;AMPLITUDE=/OP=;element set or nothing, GRAV, size, nx, ny, nz', &
-      'NODE PRINT;step;NSET=/FREQUENCY=;U, V, A, RF', &
-      'NODE FILE;step;NSET=/FREQUENCY=;U, V, A, RF', &
-      'EL PRINT;step;ELSET=/FREQUENCY=;S, E, ENER', &
-      'EL FILE;step;ELSET=/FREQUENCY=;S, E, ENER', &
-      'CONTACT PRINT;step;FREQUENCY=;CF, CDIS', &
-      'CONTACT FILE;step;FREQUENCY=;CF, CDIS', &
-      'ENERGY PRINT;step;FREQUENCY=/LIMIT=;-', &
-      'RESTART;~;WRITE/FREQUENCY=;-', &
-      'PREPRINT;note;;text', &
-      'PRINT;note;;text', &
-      'OUTPUT;note;;text', &
-      'NODE OUTPUT;note;;text', &
-      'ELEMENT OUTPUT;note;;text', &
-      'CONTACT OUTPUT;note;;text', &
-      'ENERGY OUTPUT;note;;text']
+         'HEADING;any;;text', &
+         'PARAMETER;any;;name = number', &
+         'INCLUDE;any;INPUT=!;-', &
+         'NODE;model;NSET=;id, x, y[, z]', &
+         'NSET;model;NSET=!/GENERATE;node ids and set names, or with GENERATE first, last[, step]', &
+         'ELSET;model;ELSET=!/GENERATE;element ids and set names, or with GENERATE '// &
+         'first, last[, step]', &
+         'ELEMENT;model;TYPE=!/ELSET=;id, nodes', &
+         'SOLID SECTION;model;ELSET=!/MATERIAL=!/~ELEMENTS=;area', &
+         'MATERIAL;model;NAME=!;-', &
+         'ELASTIC;model;TYPE=;E, nu', &
+         'DENSITY;model;;rho', &
+         'PLASTIC;~;HARDENING=;stress, plastic strain', &
+         'DAMPING;model;ALPHA=/BETA=;-', &
+         'SPRING;model;ELSET=!/NONLINEAR;the freedoms (none for SPRINGA), then '// &
+         'the stiffness, or with NONLINEAR lines of force, elongation', &
+         'DASHPOT;model;ELSET=!;the freedoms (none for DASHPOTA), then the coefficient', &
+         'MASS;model;ELSET=!;mass', &
+         'ELEMENT GROUP;model;ELSET=!/SCHEME=!/MASS=;-', &
+         'AMPLITUDE;model;NAME=!/TIME=;up to 4 pairs of time, value', &
+         'BOUNDARY;both;AMPLITUDE=/TYPE=/OP=;node or set, first dof[, last dof[, value]]', &
+         'BASE MOTION;step;AMPLITUDE=!/DOF=!;scale', &
+         'INITIAL CONDITIONS;both;TYPE=!;node or set, dof, value', &
+         'EQUATION;model;;number of terms, then up to 4 triples of node, dof, coefficient a line', &
+         'SURFACE;model;NAME=!/TYPE=!;nodes or node sets', &
+         'RIGID SURFACE;model;NAME=!/TYPE=!/AMPLITUDE=;a point x, y, z; then the outward normal '// &
+         'nx, ny, nz; with AMPLITUDE then dx, dy, dz, size', &
+         'SURFACE INTERACTION;model;NAME=!;-', &
+         'IMPACT;model;METHOD=/RESTITUTION=/RETURN=/SOLUTION=/BETA=/CAPTURE=/MAX EVENTS=/'// &
+         'EVENTS=/~STIFFNESS=;-', &
+         'FRICTION;~;;mu', &
+         'CONTACT PAIR;model;INTERACTION=!/TYPE=/PASSES=/~MASS=/~ADJUST?/~SMALL SLIDING;'// &
+         'slave surface, master surface', &
+         'GAP;model;ELSET=!/INTERACTION=!;clearance[, nx, ny, nz]', &
+         'STEP;any;INC=/NAME=/~NLGEOM?/~PERTURBATION;-', &
+         'END STEP;any;;-', &
+         'STATIC;step;DIRECT/~SOLVER=/~TOLERANCE=;dt, T', &
+         'DYNAMIC;step;DIRECT/EXPLICIT/GAMMA=/BETA=/ALPHA=/~ORDER=/~TOLERANCE=/~SOLVER=;dt, T', &
+         'FREQUENCY;~;SOLVER=;number of modes', &
+         'CLOAD;step;AMPLITUDE=/OP=;node or set, dof, force', &
+         'DLOAD;step;AMPLITUDE=/OP=;element set or nothing, GRAV, size, nx, ny, nz', &
+         'NODE PRINT;step;NSET=/FREQUENCY=;U, V, A, RF', &
+         'NODE FILE;step;NSET=/FREQUENCY=;U, V, A, RF', &
+         'EL PRINT;step;ELSET=/FREQUENCY=;S, E, ENER', &
+         'EL FILE;step;ELSET=/FREQUENCY=;S, E, ENER', &
+         'CONTACT PRINT;step;FREQUENCY=;CF, CDIS', &
+         'CONTACT FILE;step;FREQUENCY=;CF, CDIS', &
+         'ENERGY PRINT;step;FREQUENCY=/LIMIT=;-', &
+         'RESTART;~;WRITE/FREQUENCY=;-', &
+         'PREPRINT;note;;text', &
+         'PRINT;note;;text', &
+         'OUTPUT;note;;text', &
+         'NODE OUTPUT;note;;text', &
+         'ELEMENT OUTPUT;note;;text', &
+         'CONTACT OUTPUT;note;;text', &
+         'ENERGY OUTPUT;note;;text']
 
 contains
-
-   !> Index of a keyword in the rules, 0 if it is unknown.
-   pure function find_rule(keyword) result(rule)
-      character(len=*), intent(in) :: keyword   !! squeezed
-      integer :: rule
-
-      rule = find_word(keyword, keywords())
-   end function find_rule
 
    !> What a data line of a card holds.
    pure function usage_of(rule) result(usage)
@@ -99,20 +91,26 @@ contains
       note = part(rule, 2) == 'note'
    end function is_note_card
 
-   !> Checks keyword, level, parameters and the presence of data; sets the card's rule.
-   pure subroutine check_card(card, data, source, error)
+   !> Looks the keyword up and sets the card's rule.
+   pure subroutine check_keyword(card, source, error)
       type(card_type), intent(inout) :: card
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+
+      card%rule = find_word(card%keyword, keywords())
+      if (card%rule > 0) return
+      call fail_at(error, source, card%place, "unknown keyword '*"//card%keyword//"'", &
+         cure=advice(card%keyword, keywords()))
+   end subroutine check_keyword
+
+   !> Checks level, parameters and the presence of data of a card whose rule is set.
+   pure subroutine check_card(card, data, source, error)
+      type(card_type), intent(in) :: card
       type(place_type), intent(in) :: data(:)   !! the data lines of the deck
       type(source_type), intent(in) :: source
       type(error_type), allocatable, intent(out) :: error
       integer :: i
 
-      card%rule = find_rule(card%keyword)
-      if (card%rule == 0) then
-         call fail_at(error, source, card%place, "unknown keyword '*"//card%keyword//"'", &
-            cure=advice(card%keyword, keywords()))
-         return
-      end if
       if (is_note_card(card%rule)) return
       call check_level(card, source, error)
       if (allocated(error)) return
@@ -135,13 +133,13 @@ contains
       name = '*'//trim(part(card%rule, 1))
       if (level == '~') then
          call fail_at(error, source, card%place, name//' is known but does not work yet', &
-            cure='remove the card')
+               cure='remove the card')
       else if (level == 'model' .and. card%step > 0) then
          call fail_at(error, source, card%place, name//' must not stand inside a step', &
-            cure='move it before the first *STEP')
+               cure='move it before the first *STEP')
       else if (level == 'step' .and. card%step == 0) then
          call fail_at(error, source, card%place, name//' must stand inside a step', &
-            cure='move it between *STEP and *END STEP')
+               cure='move it between *STEP and *END STEP')
       end if
    end subroutine check_level
 
@@ -165,7 +163,7 @@ contains
          do j = 1, i - 1
             if (card%parameters(j)%name /= given%name) cycle
             call fail_at(error, source, given%place, given%name//' is given twice on this card', &
-               cure='keep one of the two')
+                  cure='keep one of the two')
             return
          end do
          marks = parameter_marks(card%rule, k)
@@ -176,7 +174,7 @@ contains
             call require_value(given, source, error)
          else if (index(marks, '?') == 0 .and. allocated(given%value)) then
             call fail_at(error, source, given%place, trim(list(k))//' takes no value', &
-               cure='write '//trim(list(k))//' alone')
+                  cure='write '//trim(list(k))//' alone')
          end if
       end associate
    end subroutine check_parameter
@@ -216,7 +214,7 @@ contains
       type(source_type), intent(in) :: source
       type(error_type), allocatable, intent(out) :: error
       character(len=*), parameter :: optional_data(*) = [character(len=word_length) :: &
-         'STATIC', 'BASE MOTION', 'HEADING', 'PARAMETER']
+            'STATIC', 'BASE MOTION', 'HEADING', 'PARAMETER']
       character(len=:), allocatable :: usage
 
       usage = usage_of(card%rule)

@@ -4,6 +4,7 @@ module card_splitter
    use places, only: place_type, source_type, fail_at
    use words, only: squeezed, is_blank
    use cards, only: card_type, deck_type, parameter_type, parameter_index
+   use card_rules, only: check_keyword
    use source_reader, only: add_file
    implicit none
    private
@@ -39,13 +40,13 @@ contains
       if (allocated(error)) return
       if (deck%n_cards == 0) then
          call new_error(error, status_deck, path//':1: the deck is empty'//new_line('a')// &
-            '  cure: write at least *NODE, *ELEMENT and a step')
+               '  cure: write at least *NODE, *ELEMENT and a step')
       else if (progress%step > 0) then
          call fail_at(error, source, deck%cards(progress%open_step_card)%place, &
-            'this step has no *END STEP', cure='close it with *END STEP')
+               'this step has no *END STEP', cure='close it with *END STEP')
       else if (progress%n_steps == 0) then
          call fail_at(error, source, deck%cards(deck%n_cards)%place, &
-            'the deck has no step', cure='add *STEP, *DYNAMIC or *STATIC, *END STEP')
+               'the deck has no step', cure='add *STEP, *DYNAMIC or *STATIC, *END STEP')
       end if
    end subroutine split_deck
 
@@ -67,6 +68,9 @@ contains
             if (.not. allocated(error)) call place_card(deck, source, progress, error)
          case (kind_data)
             call add_data(deck, source, file, line, error)
+         case default
+            line = line + 1
+            cycle
          end select
          if (allocated(error)) return
          line = line + 1
@@ -102,7 +106,7 @@ contains
       place%line = line
       if (deck%n_cards == 0) then
          call fail_at(error, source, place, 'data before any keyword card', &
-            cure='a deck begins with a keyword such as *HEADING or *NODE; comments begin with **')
+               cure='a deck begins with a keyword such as *HEADING or *NODE; comments begin with **')
          return
       end if
       associate (card => deck%cards(deck%n_cards))
@@ -139,7 +143,7 @@ contains
       call read_card_line(card, source%files(file)%lines(line)%text, place, continued)
       if (card%keyword == '') then
          call fail_at(error, source, card%place, "a '*' without a keyword", &
-            cure='write *KEYWORD, or ** for a comment')
+               cure='write *KEYWORD, or ** for a comment')
          return
       end if
       do while (continued .and. line < source%files(file)%n_lines)
@@ -249,29 +253,34 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(place_type) :: place
 
+      call check_keyword(deck%cards(deck%n_cards), source, error)
+      if (allocated(error)) return
       place = deck%cards(deck%n_cards)%place
       select case (deck%cards(deck%n_cards)%keyword)
       case ('STEP')
          if (progress%step > 0) then
             call fail_at(error, source, place, 'a step inside a step', &
-               cure='close the step before with *END STEP')
+                  cure='close the step before with *END STEP')
             return
          end if
          progress%n_steps = progress%n_steps + 1
          progress%step = progress%n_steps
          progress%open_step_card = deck%n_cards
+         deck%cards(deck%n_cards)%step = progress%step
       case ('ENDSTEP')
          if (progress%step == 0) then
             call fail_at(error, source, place, '*END STEP without *STEP', &
-               cure='remove it, or open the step with *STEP')
+                  cure='remove it, or open the step with *STEP')
             return
          end if
+         deck%cards(deck%n_cards)%step = progress%step
          progress%step = 0
       case ('INCLUDE')
          call follow_include(deck, source, progress, error)
          return
+      case default
+         deck%cards(deck%n_cards)%step = progress%step
       end select
-      deck%cards(deck%n_cards)%step = progress%step
    end subroutine place_card
 
    !> Takes the *INCLUDE card away and reads its file in its place.
@@ -288,8 +297,8 @@ contains
       deck%n_cards = deck%n_cards - 1
       i = parameter_index(card, 'INPUT')
       if (i == 0 .or. size(card%parameters) /= 1) then
-         call fail_at(error, source, card%place, '*INCLUDE needs the parameter INPUT, and no other', &
-            cure='write *INCLUDE, INPUT=file')
+         call fail_at(error, source, card%place, &
+               '*INCLUDE needs the parameter INPUT, and no other', cure='write *INCLUDE, INPUT=file')
          return
       end if
       if (.not. allocated(card%parameters(1)%value)) card%parameters(1)%value = ''
@@ -297,13 +306,14 @@ contains
       call find_trouble(source, progress, path, trouble)
       if (allocated(trouble)) then
          call fail_at(error, source, card%parameters(1)%place, trouble, &
-            cure='a file must not include itself, directly or through others')
+               cure='a file must not include itself, directly or through others')
          return
       end if
       call add_file(source, path, error)
       if (allocated(error)) then
+         trouble = error%message
          if (error%status == status_file) call fail_at(error, source, card%parameters(1)%place, &
-               error%message, cure='the path is relative to the file that includes')
+            trouble, cure='the path is relative to the file that includes')
          return
       end if
       call split_file(deck, source, source%n_files, progress, error)

@@ -198,10 +198,10 @@ contains
 
       if (len(name) > name_length) then
          call fail_at(error, source, place, 'this name is too long', &
-            cure='names have up to 80 characters')
+               cure='names have up to 80 characters')
       else if (verify(name, '+-0123456789') == 0) then
          call fail_at(error, source, place, "'"//name//"' is no name", &
-            cure='a name must not be a number')
+               cure='a name must not be a number')
       end if
    end subroutine check_name
 

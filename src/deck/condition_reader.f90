@@ -8,7 +8,7 @@ module condition_reader
    use model, only: model_type
    use model_building, only: append, fit
    use integer_map, only: integer_map_type
-   use cards, only: deck_type, card_type, get_word
+   use cards, only: deck_type, card_type, get_word, has_parameter, parameter_place
    use fields, only: fields_type, split_line, check_count, field_place, is_given, get_real
    use amplitude_reader, only: find_amplitude
    use set_reader, only: find_nodes
@@ -21,7 +21,7 @@ module condition_reader
    public :: read_boundaries, read_initial_conditions, read_loads
 
    character(len=word_length), parameter :: ic_types(*) = [character(len=word_length) :: &
-      'DISPLACEMENT', 'VELOCITY']
+         'DISPLACEMENT', 'VELOCITY']
 
 contains
 
@@ -38,6 +38,11 @@ contains
       n = 0
       do i = 1, deck%n_cards
          if (deck%cards(i)%keyword /= 'BOUNDARY' .or. deck%cards(i)%step /= step) cycle
+         if (step == 0 .and. has_parameter(deck%cards(i), 'OP')) then
+            call fail_at(error, model%source, parameter_place(deck%cards(i), 'OP'), &
+               'OP has a meaning inside a step only', cure='remove it')
+            return
+         end if
          call read_boundary_card(list, n, given, model, deck, deck%cards(i), error)
          if (allocated(error)) return
       end do
@@ -53,9 +58,9 @@ contains
       type(card_type), intent(in) :: card
       type(error_type), allocatable, intent(out) :: error
       character(len=word_length), parameter :: types(*) = [character(len=word_length) :: &
-         'DISPLACEMENT', 'VELOCITY', 'ACCELERATION']
+            'DISPLACEMENT', 'VELOCITY', 'ACCELERATION']
       integer, parameter :: motions(0:3) = &
-         [motion_displacement, motion_displacement, motion_velocity, motion_acceleration]
+            [motion_displacement, motion_displacement, motion_velocity, motion_acceleration]
       type(fields_type) :: fields
       type(boundary_type) :: boundary
       integer :: choice, line
@@ -97,13 +102,15 @@ contains
       if (allocated(error)) return
       if (last < first) then
          call fail_at(error, model%source, field_place(fields, 3), &
-            'the last freedom is below the first', &
-            cure='a line is: node or set, first dof[, last dof[, value]]')
+               'the last freedom is below the first', &
+               cure='a line is: node or set, first dof[, last dof[, value]]')
          return
       end if
       boundary%value = 0.0_wp
-      if (is_given(fields, 4)) call get_real(fields, 4, 'value', boundary%value, model%source, error)
-      if (allocated(error)) return
+      if (is_given(fields, 4)) then
+         call get_real(fields, 4, 'value', boundary%value, model%source, error)
+         if (allocated(error)) return
+      end if
       do i = 1, size(nodes)
          do dof = first, last
             boundary%node = nodes(i)
@@ -131,11 +138,11 @@ contains
          return
       end if
       if (list(twin)%motion == boundary%motion .and. &
-         list(twin)%amplitude == boundary%amplitude .and. &
-         abs(list(twin)%value - boundary%value) <= 0.0_wp) return
+            list(twin)%amplitude == boundary%amplitude .and. &
+            abs(list(twin)%value - boundary%value) <= 0.0_wp) return
       call fail_at(error, model%source, boundary%place, 'freedom '//to_text(boundary%dof)// &
-         ' of node '//to_text(model%nodes%id(boundary%node))//' is given another value at '// &
-         line_text(model%source, list(twin)%place), cure='give every freedom one condition')
+            ' of node '//to_text(model%nodes%id(boundary%node))//' is given another value at '// &
+            line_text(model%source, list(twin)%place), cure='give every freedom one condition')
    end subroutine add_boundary
 
    !> All *INITIAL CONDITIONS of a step, or of the model (step 0).
@@ -156,8 +163,8 @@ contains
          if (allocated(error)) return
          if (choice == 1 .and. step > 0) then
             call fail_at(error, model%source, deck%cards(i)%place, &
-               'initial displacements must not stand inside a step', &
-               cure='move the card before the first *STEP')
+                  'initial displacements must not stand inside a step', &
+                  cure='move the card before the first *STEP')
             return
          end if
          if (choice == 1) then
@@ -195,8 +202,8 @@ contains
                call given%insert(3*item%node + item%dof, n)
             else if (abs(list(twin)%value - item%value) > 0.0_wp) then
                call fail_at(error, model%source, item%place, 'freedom '//to_text(item%dof)// &
-                  ' of node '//to_text(model%nodes%id(item%node))//' is given another value at '// &
-                  line_text(model%source, list(twin)%place), cure='give every freedom one value')
+                     ' of node '//to_text(model%nodes%id(item%node))//' is given another value at '// &
+                     line_text(model%source, list(twin)%place), cure='give every freedom one value')
                return
             end if
          end do

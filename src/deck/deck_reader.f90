@@ -33,7 +33,7 @@ contains
       type(model_type), intent(out) :: model
       character(len=*), intent(in) :: path
       type(definition_type), intent(in) :: definitions(:)   !! override *PARAMETER of the same name
-      type(error_type), allocatable, intent(out) :: error   !! status_deck, status_file, status_usage
+      type(error_type), allocatable, intent(out) :: error   !! its status tells which kind
       type(deck_type) :: deck
 
       allocate (model%notes(0))
@@ -66,14 +66,14 @@ contains
          call check_card(deck%cards(i), deck%data, model%source, error)
          if (allocated(error)) return
          if (is_note_card(deck%cards(i)%rule)) call add_note(model%notes, note_at(model%source, &
-            deck%cards(i)%place, '*'//deck%cards(i)%keyword//' has no effect here'))
+               deck%cards(i)%place, '*'//deck%cards(i)%keyword//' has no effect here'))
          if (deck%cards(i)%keyword == 'HEADING') call add_heading(model, deck, i)
       end do
       call mark_used_symbols(deck, model%source)
       do i = 1, size(deck%symbols)
          if (deck%symbols(i)%used) cycle
          call add_note(model%notes, note_at(model%source, deck%symbols(i)%place, &
-            'the parameter '//trim(deck%symbols(i)%name)//' is not used'))
+               'the parameter '//trim(deck%symbols(i)%name)//' is not used'))
       end do
    end subroutine check_cards
 
@@ -86,7 +86,7 @@ contains
       do j = deck%cards(i)%first, deck%cards(i)%last
          if (len(model%heading) > 0) model%heading = model%heading//new_line('a')
          model%heading = model%heading// &
-            trim(model%source%files(deck%data(j)%file)%lines(deck%data(j)%line)%text)
+               trim(model%source%files(deck%data(j)%file)%lines(deck%data(j)%line)%text)
       end do
    end subroutine add_heading
 

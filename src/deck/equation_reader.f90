@@ -28,7 +28,8 @@ contains
 
       n = 0
       do i = 1, deck%n_cards
-         if (deck%cards(i)%keyword == 'EQUATION') n = n + deck%cards(i)%last - deck%cards(i)%first + 1
+         if (deck%cards(i)%keyword /= 'EQUATION') cycle
+         n = n + deck%cards(i)%last - deck%cards(i)%first + 1
       end do
       allocate (equations(n))
       n = 0
@@ -64,8 +65,8 @@ contains
       equation%place = fields%place
       if (n_terms < 2 .or. n_terms > 4*(card%last - line)) then
          call fail_at(error, model%source, field_place(fields, 1), &
-            'the number of terms does not fit the lines that follow', &
-            cure='write the number, 2 at least, then that many triples of node, dof, coefficient')
+               'the number of terms does not fit the lines that follow', &
+               cure='write the number, 2 at least, then that many triples of node, dof, coefficient')
          return
       end if
       allocate (equation%node(n_terms), equation%dof(n_terms), equation%coefficient(n_terms))
@@ -74,8 +75,8 @@ contains
       do while (n_read < n_terms)
          if (line > card%last) then
             call fail_at(error, model%source, equation%place, 'the equation has '// &
-               to_text(n_terms)//' terms but only '//to_text(n_read)//' follow', &
-               cure='write as many triples of node, dof, coefficient as the number says')
+                  to_text(n_terms)//' terms but only '//to_text(n_read)//' follow', &
+                  cure='write as many triples of node, dof, coefficient as the number says')
             return
          end if
          call read_terms(equation, n_read, model, deck, card, line, error)
@@ -107,17 +108,18 @@ contains
          equation%node(n_read) = model%nodes%index_of%find(id)
          if (equation%node(n_read) == 0) then
             call fail_at(error, model%source, field_place(fields, i), &
-               'no such node: '//to_text(id), cure='define it with *NODE')
+                  'no such node: '//to_text(id), cure='define it with *NODE')
             return
          end if
          call get_dof(fields, i + 1, equation%dof(n_read), model%source, error)
          if (allocated(error)) return
          call get_real(fields, i + 2, 'coefficient', equation%coefficient(n_read), &
-            model%source, error)
+               model%source, error)
          if (allocated(error)) return
          if (n_read > 1 .or. abs(equation%coefficient(1)) > 0.0_wp) cycle
          call fail_at(error, model%source, field_place(fields, 3), &
-            'the first coefficient is zero', cure='the first freedom is eliminated: it must take part')
+               'the first coefficient is zero', &
+               cure='the first freedom is eliminated: it must take part')
          return
       end do
    end subroutine read_terms
@@ -134,7 +136,7 @@ contains
          twin = eliminated%find(key)
          if (twin > 0) then
             call report(model, i, 1, 'is eliminated twice, first at '// &
-               line_text(model%source, model%equations(twin)%place), error)
+                  line_text(model%source, model%equations(twin)%place), error)
             return
          end if
          call eliminated%insert(key, i)
@@ -167,7 +169,7 @@ contains
             return
          else if (k > 1 .and. other > 0) then
             call report(model, i, k, 'is used here but eliminated at '// &
-               line_text(model%source, model%equations(other)%place), error)
+                  line_text(model%source, model%equations(other)%place), error)
             return
          end if
          call seen%insert(key, k)
@@ -181,10 +183,10 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       call fail_at(error, model%source, model%equations(i)%place, 'freedom '// &
-         to_text(model%equations(i)%dof(k))//' of node '// &
-         to_text(model%nodes%id(model%equations(i)%node(k)))//' '//trouble, &
-         cure='the first freedom of an equation is eliminated: let each be first once, '// &
-         'and stand nowhere else')
+            to_text(model%equations(i)%dof(k))//' of node '// &
+            to_text(model%nodes%id(model%equations(i)%node(k)))//' '//trouble, &
+            cure='the first freedom of an equation is eliminated: let each be first once, '// &
+            'and stand nowhere else')
    end subroutine report
 
    subroutine check_boundaries(model, boundaries, eliminated, error)
@@ -198,10 +200,10 @@ contains
          other = eliminated%find(freedom_key(boundaries(i)%node, boundaries(i)%dof))
          if (other == 0) cycle
          call fail_at(error, model%source, boundaries(i)%place, 'freedom '// &
-            to_text(boundaries(i)%dof)//' of node '//to_text(model%nodes%id(boundaries(i)%node))// &
-            ' is prescribed here but eliminated by the equation at '// &
-            line_text(model%source, model%equations(other)%place), &
-            cure='prescribe another freedom of the equation, or write that freedom first')
+               to_text(boundaries(i)%dof)//' of node '//to_text(model%nodes%id(boundaries(i)%node))// &
+               ' is prescribed here but eliminated by the equation at '// &
+               line_text(model%source, model%equations(other)%place), &
+               cure='prescribe another freedom of the equation, or write that freedom first')
          return
       end do
    end subroutine check_boundaries

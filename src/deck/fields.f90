@@ -111,7 +111,7 @@ contains
       new_text = ''
       do i = 1, fields%n
          call substitute(deck, fields%text(fields%first(i):fields%last(i)), &
-            field_place(fields, i), piece, source, error)
+               field_place(fields, i), piece, source, error)
          if (allocated(error)) return
          fields%first(i) = len(new_text) + 1
          new_text = new_text//piece
@@ -185,7 +185,7 @@ contains
 
       if (card%last > card%first) then
          call fail_at(error, source, deck%data(card%first + 1), &
-            'too many data lines: this card takes one', cure='the line is: '//usage_of(card%rule))
+               'too many data lines: this card takes one', cure='the line is: '//usage_of(card%rule))
          return
       end if
       call split_line(fields, deck, card, card%first, source, error)
@@ -262,7 +262,7 @@ contains
       word = squeezed(field_text(fields, i))
       if (word == '') then
          call fail_at(error, source, field_place(fields, i), what//': missing', &
-            cure='a line is: '//usage_of(fields%rule))
+               cure='a line is: '//usage_of(fields%rule))
          return
       end if
       call check_name(word, field_place(fields, i), source, error)

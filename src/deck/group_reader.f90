@@ -43,9 +43,9 @@ contains
       type(card_type), intent(in) :: card
       type(error_type), allocatable, intent(out) :: error
       character(len=word_length), parameter :: schemes(*) = [character(len=word_length) :: &
-         'IMPLICIT', 'EXPLICIT', '~AUTO']
+            'IMPLICIT', 'EXPLICIT', '~AUTO']
       character(len=word_length), parameter :: masses(*) = [character(len=word_length) :: &
-         'LUMPED', 'CONSISTENT']
+            'LUMPED', 'CONSISTENT']
       integer, parameter :: scheme_values(*) = [scheme_implicit, scheme_explicit]
       integer, parameter :: mass_values(0:2) = [0, mass_lumped, mass_consistent]
       character(len=name_length) :: name
@@ -64,9 +64,9 @@ contains
       if (allocated(error)) return
       model%groups(n)%mass = mass_values(choice)
       if (model%groups(n)%scheme == scheme_explicit .and. &
-         model%groups(n)%mass == mass_consistent) then
+            model%groups(n)%mass == mass_consistent) then
          call fail_at(error, model%source, parameter_place(card, 'MASS'), &
-            'explicit elements cannot have a consistent mass', cure='write MASS=LUMPED')
+               'explicit elements cannot have a consistent mass', cure='write MASS=LUMPED')
       end if
    end subroutine read_group
 
@@ -82,9 +82,9 @@ contains
          e = model%element_sets(model%groups(n)%set)%members(i)
          if (group_of(e) > 0) then
             call fail_at(error, model%source, parameter_place(card, 'ELSET'), 'element '// &
-               to_text(model%elements%id(e))//' is in two element groups, the first at '// &
-               line_text(model%source, model%groups(group_of(e))%place), &
-               cure='let the sets of the groups have no element in common')
+                  to_text(model%elements%id(e))//' is in two element groups, the first at '// &
+                  line_text(model%source, model%groups(group_of(e))%place), &
+                  cure='let the sets of the groups have no element in common')
             return
          end if
          group_of(e) = n

@@ -38,11 +38,13 @@ contains
          case ('IMPACT')
             if (n == 0) then
                call fail_at(error, model%source, deck%cards(i)%place, &
-                  '*IMPACT belongs to a surface interaction', &
-                  cure='put *SURFACE INTERACTION, NAME=name before it')
+                     '*IMPACT belongs to a surface interaction', &
+                     cure='put *SURFACE INTERACTION, NAME=name before it')
                return
             end if
             call read_impact(model%interactions(n), deck%cards(i), model%source, error)
+         case default
+            cycle
          end select
          if (allocated(error)) return
       end do
@@ -59,8 +61,8 @@ contains
       model%interactions(n)%place = card%place
       if (find_named(model%interactions(:n - 1), model%interactions(n)%name) == 0) return
       call fail_at(error, model%source, parameter_place(card, 'NAME'), "surface interaction '"// &
-         trim(model%interactions(n)%name)//"' is defined twice", &
-         cure='give every interaction its own name')
+            trim(model%interactions(n)%name)//"' is defined twice", &
+            cure='give every interaction its own name')
    end subroutine open_interaction
 
    subroutine read_impact(interaction, card, source, error)
@@ -71,7 +73,7 @@ contains
 
       if (interaction%has_impact) then
          call fail_at(error, source, card%place, 'this interaction has *IMPACT already', &
-            cure='keep one of the two')
+               cure='keep one of the two')
          return
       end if
       interaction%has_impact = .true.
@@ -91,11 +93,11 @@ contains
       type(source_type), intent(in) :: source
       type(error_type), allocatable, intent(out) :: error
       character(len=word_length), parameter :: methods(*) = [character(len=word_length) :: &
-         'TRANSFORMATION', 'FICTITIOUS FORCE', '~PENALTY', '~LAGRANGE']
+            'TRANSFORMATION', 'FICTITIOUS FORCE', '~PENALTY', '~LAGRANGE']
       character(len=word_length), parameter :: solutions(*) = [character(len=word_length) :: &
-         'ITERATION', 'DIRECT']
+            'ITERATION', 'DIRECT']
       character(len=word_length), parameter :: events(*) = [character(len=word_length) :: &
-         'SUBSTEP', '~ANCHOR']
+            'SUBSTEP', '~ANCHOR']
       integer :: choice
 
       call get_word(card, 'METHOD', methods, choice, source, error)
@@ -146,14 +148,14 @@ contains
       if (allocated(error)) return
       if (interaction%restitution < 0.0_wp .or. interaction%restitution > 1.0_wp) then
          call fail_at(error, source, parameter_place(card, 'RESTITUTION'), &
-            'RESTITUTION is out of range', cure='write a number from 0 to 1')
+               'RESTITUTION is out of range', cure='write a number from 0 to 1')
       else if (interaction%return_parameter <= 0.0_wp .or. &
-         interaction%return_parameter >= 1.0_wp) then
+            interaction%return_parameter >= 1.0_wp) then
          call fail_at(error, source, parameter_place(card, 'RETURN'), &
-            'RETURN is out of range', cure='write a number between 0 and 1, neither included')
+               'RETURN is out of range', cure='write a number between 0 and 1, neither included')
       else if (interaction%capture < 0.0_wp) then
          call fail_at(error, source, parameter_place(card, 'CAPTURE'), &
-            'CAPTURE must not be negative', cure='write a speed from 0 up')
+               'CAPTURE must not be negative', cure='write a speed from 0 up')
       end if
    end subroutine read_speeds
 
@@ -197,15 +199,15 @@ contains
       do i = 1, size(used)
          if (.not. used(i)) then
             call add_note(model%notes, note_at(model%source, model%interactions(i)%place, &
-               "surface interaction '"//trim(model%interactions(i)%name)//"' is not used"))
+                  "surface interaction '"//trim(model%interactions(i)%name)//"' is not used"))
             cycle
          end if
          if (first == 0) first = i
          if (model%interactions(i)%method == model%interactions(first)%method) cycle
          call fail_at(error, model%source, model%interactions(i)%place, &
-            "the interactions '"//trim(model%interactions(first)%name)//"' and '"// &
-            trim(model%interactions(i)%name)//"' have different methods", &
-            cure='give all interactions in use the same METHOD')
+               "the interactions '"//trim(model%interactions(first)%name)//"' and '"// &
+               trim(model%interactions(i)%name)//"' have different methods", &
+               cure='give all interactions in use the same METHOD')
          return
       end do
    end subroutine check_methods

@@ -56,8 +56,9 @@ contains
 
       n = 0
       do i = 1, deck%n_cards
-         if (deck%cards(i)%keyword == keyword .and. deck%cards(i)%step == step) &
+         if (deck%cards(i)%keyword == keyword .and. deck%cards(i)%step == step) then
             n = n + deck%cards(i)%last - deck%cards(i)%first + 1
+         end if
       end do
    end function count_lines
 
@@ -76,12 +77,12 @@ contains
          call check_count(fields, 6, model%source, error)
       case ('P1', 'P2', 'P3', 'P4')
          call fail_at(error, model%source, field_place(fields, 2), &
-            squeezed(field_text(fields, 2))//' is known but does not work yet', &
-            cure=advice('', allowed))
+               squeezed(field_text(fields, 2))//' is known but does not work yet', &
+               cure=advice('', allowed))
       case default
          call fail_at(error, model%source, field_place(fields, 2), &
-            "unknown load '"//field_text(fields, 2)//"'", &
-            cure=advice(field_text(fields, 2), allowed))
+               "unknown load '"//field_text(fields, 2)//"'", &
+               cure=advice(field_text(fields, 2), allowed))
       end select
       if (allocated(error)) return
       if (is_given(fields, 1)) then
@@ -94,7 +95,7 @@ contains
       if (allocated(error)) return
       if (norm2(values(2:)) <= 0.0_wp) then
          call fail_at(error, model%source, field_place(fields, 4), &
-            'this direction has no length', cure='write a vector of any length but zero')
+               'this direction has no length', cure='write a vector of any length but zero')
          return
       end if
       gravity%acceleration = values(1)*values(2:)/norm2(values(2:))
@@ -122,7 +123,7 @@ contains
          if (allocated(error)) return
          if (all(list(:n - 1)%dof /= list(n)%dof)) cycle
          call fail_at(error, model%source, parameter_place(deck%cards(i), 'DOF'), &
-            'this step has a base motion along this freedom already', cure='keep one of the two')
+               'this step has a base motion along this freedom already', cure='keep one of the two')
          return
       end do
    end subroutine read_base_motions
@@ -143,7 +144,7 @@ contains
       if (allocated(error)) return
       if (motion%dof > 3) then
          call fail_at(error, model%source, parameter_place(card, 'DOF'), &
-            'no such freedom', cure='freedoms are 1, 2 and 3 for x, y and z')
+               'no such freedom', cure='freedoms are 1, 2 and 3 for x, y and z')
          return
       end if
       if (card%last < card%first) return

@@ -33,6 +33,8 @@ contains
             call open_material(model, n, deck%cards(i), error)
          case ('ELASTIC', 'DENSITY', 'DAMPING')
             call read_property(model, n, deck, deck%cards(i), error)
+         case default
+            cycle
          end select
          if (allocated(error)) return
       end do
@@ -49,8 +51,8 @@ contains
       model%materials(n)%place = card%place
       if (find_named(model%materials(:n - 1), model%materials(n)%name) == 0) return
       call fail_at(error, model%source, parameter_place(card, 'NAME'), &
-         "material '"//trim(model%materials(n)%name)//"' is defined twice", &
-         cure='give every material its own name')
+            "material '"//trim(model%materials(n)%name)//"' is defined twice", &
+            cure='give every material its own name')
    end subroutine open_material
 
    subroutine read_property(model, n, deck, card, error)
@@ -61,8 +63,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       if (n == 0) then
-         call fail_at(error, model%source, card%place, '*'//card%keyword//' belongs to a material', &
-            cure='put *MATERIAL, NAME=name before it')
+         call fail_at(error, model%source, card%place, &
+               '*'//card%keyword//' belongs to a material', cure='put *MATERIAL, NAME=name before it')
          return
       end if
       select case (card%keyword)
@@ -70,7 +72,7 @@ contains
          call read_elastic(model%materials(n), deck, card, model%source, error)
       case ('DENSITY')
          call read_density(model%materials(n), deck, card, model%source, error)
-      case ('DAMPING')
+      case default
          call read_damping(model%materials(n), card, model%source, error)
       end select
    end subroutine read_property
@@ -82,7 +84,7 @@ contains
       type(source_type), intent(in) :: source
       type(error_type), allocatable, intent(out) :: error
       character(len=word_length), parameter :: types(*) = [character(len=word_length) :: &
-         'ISO', 'ISOTROPIC']
+            'ISO', 'ISOTROPIC']
       type(fields_type) :: fields
       real(wp) :: values(2)
       integer :: choice
@@ -95,13 +97,13 @@ contains
       if (allocated(error)) return
       if (material%has_elastic) then
          call fail_at(error, source, card%place, 'this material has *ELASTIC already', &
-            cure='keep one of the two')
+               cure='keep one of the two')
       else if (values(1) <= 0.0_wp) then
          call fail_at(error, source, field_place(fields, 1), &
-            "Young's modulus must be positive", cure='a line is: E, nu with E > 0')
+               "Young's modulus must be positive", cure='a line is: E, nu with E > 0')
       else if (values(2) <= -1.0_wp .or. values(2) >= 0.5_wp) then
          call fail_at(error, source, field_place(fields, 2), &
-            "Poisson's ratio is out of range", cure='write nu between -1 and 0.5, neither included')
+               "Poisson's ratio is out of range", cure='write nu between -1 and 0.5, neither included')
       end if
       material%has_elastic = .true.
       material%young = values(1)
@@ -123,10 +125,10 @@ contains
       if (allocated(error)) return
       if (material%has_density) then
          call fail_at(error, source, card%place, 'this material has *DENSITY already', &
-            cure='keep one of the two')
+               cure='keep one of the two')
       else if (values(1) <= 0.0_wp) then
          call fail_at(error, source, field_place(fields, 1), 'the density must be positive', &
-            cure='write rho > 0')
+               cure='write rho > 0')
       end if
       material%has_density = .true.
       material%density = values(1)
@@ -140,12 +142,12 @@ contains
 
       if (size(card%parameters) == 0) then
          call fail_at(error, source, card%place, '*DAMPING without ALPHA or BETA says nothing', &
-            cure='write *DAMPING, ALPHA=value, BETA=value')
+               cure='write *DAMPING, ALPHA=value, BETA=value')
          return
       end if
       if (material%has_damping) then
          call fail_at(error, source, card%place, 'this material has *DAMPING already', &
-            cure='keep one of the two')
+               cure='keep one of the two')
          return
       end if
       material%has_damping = .true.
@@ -155,10 +157,10 @@ contains
       if (allocated(error)) return
       if (material%damping_alpha < 0.0_wp) then
          call fail_at(error, source, parameter_place(card, 'ALPHA'), &
-            'ALPHA must not be negative', cure='write ALPHA >= 0')
+               'ALPHA must not be negative', cure='write ALPHA >= 0')
       else if (material%damping_beta < 0.0_wp) then
          call fail_at(error, source, parameter_place(card, 'BETA'), &
-            'BETA must not be negative', cure='write BETA >= 0')
+               'BETA must not be negative', cure='write BETA >= 0')
       end if
    end subroutine read_damping
 

@@ -19,18 +19,18 @@ module mesh_reader
    integer, parameter :: n_types = 10
    !> Element types of the deck, the kinds they become and how many nodes they have.
    character(len=word_length), parameter :: element_names(*) = [character(len=word_length) :: &
-      'MASS', 'SPRING1', 'SPRING2', 'SPRINGA', 'DASHPOT1', 'DASHPOT2', 'DASHPOTA', &
-      'T2D2', 'T3D2', 'GAPUNI', '~T3D3', '~CPE3', '~CPE4', '~CPE6', '~CPE8', '~CPE4R', '~CPE8R', &
-      '~CPS3', '~CPS4', '~CPS6', '~CPS8', '~CPS4R', '~CPS8R', &
-      '~CAX3', '~CAX4', '~CAX6', '~CAX8', '~CAX4R', '~CAX8R']
+         'MASS', 'SPRING1', 'SPRING2', 'SPRINGA', 'DASHPOT1', 'DASHPOT2', 'DASHPOTA', &
+         'T2D2', 'T3D2', 'GAPUNI', '~T3D3', '~CPE3', '~CPE4', '~CPE6', '~CPE8', '~CPE4R', '~CPE8R', &
+         '~CPS3', '~CPS4', '~CPS6', '~CPS8', '~CPS4R', '~CPS8R', &
+         '~CAX3', '~CAX4', '~CAX6', '~CAX8', '~CAX4R', '~CAX8R']
    integer, parameter :: kinds_of_types(n_types) = [element_mass, element_spring1, &
-      element_spring2, element_springa, element_dashpot1, element_dashpot2, element_dashpota, &
-      element_truss, element_truss, element_gap]
+         element_spring2, element_springa, element_dashpot1, element_dashpot2, element_dashpota, &
+         element_truss, element_truss, element_gap]
    integer, parameter :: nodes_of_types(n_types) = [1, 1, 2, 2, 1, 2, 2, 2, 2, 2]
 
    !> Names of the element kinds, for messages.
    character(len=word_length), parameter :: kind_names(*) = [character(len=word_length) :: &
-      'MASS', 'SPRING1', 'SPRING2', 'SPRINGA', 'DASHPOT1', 'DASHPOT2', 'DASHPOTA', 'T2D2', 'GAPUNI']
+         'MASS', 'SPRING1', 'SPRING2', 'SPRINGA', 'DASHPOT1', 'DASHPOT2', 'DASHPOTA', 'T2D2', 'GAPUNI']
 
 contains
 
@@ -72,14 +72,14 @@ contains
       if (allocated(error)) return
       if (id < 1) then
          call fail_at(error, model%source, field_place(fields, 1), &
-            'a node id must be positive', cure='number nodes from 1')
+               'a node id must be positive', cure='number nodes from 1')
          return
       end if
       twin = model%nodes%index_of%find(id)
       if (twin > 0) then
          call fail_at(error, model%source, field_place(fields, 1), 'node '//to_text(id)// &
                ' is defined twice, first at '//line_text(model%source, model%nodes%place(twin)), &
-            cure='give every node its own id')
+               cure='give every node its own id')
          return
       end if
       n = model%nodes%n + 1
@@ -185,7 +185,7 @@ contains
 
       if (numbers(1) < 1) then
          call fail_at(error, model%source, places(1), 'an element id must be positive', &
-            cure='number elements from 1')
+               cure='number elements from 1')
          return
       end if
       twin = model%elements%index_of%find(numbers(1))
@@ -193,7 +193,7 @@ contains
          call fail_at(error, model%source, places(1), 'element '//to_text(numbers(1))// &
                ' is defined twice, first at '// &
                line_text(model%source, model%elements%place(twin)), &
-            cure='give every element its own id')
+               cure='give every element its own id')
          return
       end if
       e = model%elements%n + 1
@@ -202,7 +202,7 @@ contains
          node = model%nodes%index_of%find(numbers(k))
          if (node == 0) then
             call fail_at(error, model%source, places(k), 'no such node: '//to_text(numbers(k)), &
-               cure='define it with *NODE')
+                  cure='define it with *NODE')
             return
          end if
          model%elements%nodes(first + k - 2) = node
@@ -210,7 +210,7 @@ contains
       if (size(numbers) == 3) then
          if (numbers(2) == numbers(3)) then
             call fail_at(error, model%source, places(3), 'the same node twice in one element', &
-               cure='join two different nodes')
+                  cure='join two different nodes')
             return
          end if
       end if

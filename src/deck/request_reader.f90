@@ -22,11 +22,11 @@ module request_reader
    public :: read_requests
 
    character(len=word_length), parameter :: node_words(*) = [character(len=word_length) :: &
-      'U', 'V', 'A', 'RF']
+         'U', 'V', 'A', 'RF']
    character(len=word_length), parameter :: element_words(*) = [character(len=word_length) :: &
-      'S', 'E', 'ENER']
+         'S', 'E', 'ENER']
    character(len=word_length), parameter :: contact_words(*) = [character(len=word_length) :: &
-      'CF', 'CDIS']
+         'CF', 'CDIS']
    integer, parameter :: node_quantities(*) = [quantity_u, quantity_v, quantity_a, quantity_rf]
    integer, parameter :: element_quantities(*) = [quantity_s, quantity_e, quantity_ener]
    integer, parameter :: contact_quantities(*) = [quantity_cf, quantity_cdis]
@@ -121,16 +121,16 @@ contains
          call read_words(request, deck, card, node_words, node_quantities, model%source, error)
       case (request_element_print, request_element_file)
          call read_words(request, deck, card, element_words, element_quantities, model%source, &
-            error)
+               error)
       case (request_contact_print, request_contact_file)
          call read_words(request, deck, card, contact_words, contact_quantities, model%source, &
-            error)
+               error)
       case default
          call get_real_parameter(card, 'LIMIT', request%balance_limit, model%source, error)
          if (allocated(error) .or. .not. has_parameter(card, 'LIMIT')) return
          if (request%balance_limit > 0.0_wp) return
          call fail_at(error, model%source, parameter_place(card, 'LIMIT'), &
-            'LIMIT must be positive', cure='write the balance error allowed, such as 1e-3')
+               'LIMIT must be positive', cure='write the balance error allowed, such as 1e-3')
       end select
    end subroutine read_request
 
@@ -176,11 +176,11 @@ contains
             end if
             if (squeezed(field_text(fields, k)) == 'PEEQ') then
                call fail_at(error, source, field_place(fields, k), &
-                  'PEEQ is known but does not work yet', cure=advice('', list))
+                     'PEEQ is known but does not work yet', cure=advice('', list))
             else
                call fail_at(error, source, field_place(fields, k), &
-                  "unknown quantity '"//field_text(fields, k)//"'", &
-                  cure=advice(field_text(fields, k), list))
+                     "unknown quantity '"//field_text(fields, k)//"'", &
+                     cure=advice(field_text(fields, k), list))
             end if
             return
          end do

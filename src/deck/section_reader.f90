@@ -137,10 +137,10 @@ contains
          call read_solid(section, model, deck, card, error)
       case (section_spring, section_dashpot)
          call read_spring(section, deck, card, &
-            model%elements%kind(model%element_sets(section%set)%members), model%source, error)
+               model%elements%kind(model%element_sets(section%set)%members), model%source, error)
       case (section_mass)
          call read_mass(section, deck, card, model%source, error)
-      case (section_gap)
+      case default
          call read_gap(section, model, deck, card, error)
       end select
    end subroutine read_section
@@ -157,9 +157,9 @@ contains
          e = model%element_sets(section%set)%members(i)
          if (kind_of_section(model%elements%kind(e)) == section%kind) cycle
          call fail_at(error, model%source, parameter_place(card, 'ELSET'), &
-            'wrong element type: element '//to_text(model%elements%id(e))//' is '// &
-            trim(kind_names(model%elements%kind(e)))//', which takes '// &
-            section_card(model%elements%kind(e)), cure='give each type a set of its own')
+               'wrong element type: element '//to_text(model%elements%id(e))//' is '// &
+               trim(kind_names(model%elements%kind(e)))//', which takes '// &
+               section_card(model%elements%kind(e)), cure='give each type a set of its own')
          return
       end do
    end subroutine check_kinds
@@ -179,8 +179,8 @@ contains
       section%material = find_named(model%materials, name)
       if (section%material == 0) then
          call fail_at(error, model%source, parameter_place(card, 'MATERIAL'), &
-            'no such material: '//trim(name), &
-            cure='define it with *MATERIAL; '//advice(name, model%materials%name))
+               'no such material: '//trim(name), &
+               cure='define it with *MATERIAL; '//advice(name, model%materials%name))
          return
       end if
       call check_material(model, deck, card, section%material, error)
@@ -205,11 +205,11 @@ contains
       associate (used => model%materials(material))
          if (.not. used%has_elastic) then
             call fail_at(error, model%source, parameter_place(card, 'MATERIAL'), &
-               "material '"//trim(used%name)//"' has no *ELASTIC", cure='give it E and nu')
+                  "material '"//trim(used%name)//"' has no *ELASTIC", cure='give it E and nu')
          else if (.not. used%has_density .and. count_cards(deck, 'DYNAMIC') > 0) then
             call fail_at(error, model%source, parameter_place(card, 'MATERIAL'), &
-               "material '"//trim(used%name)//"' has no *DENSITY", &
-               cure='a *DYNAMIC step needs the density')
+                  "material '"//trim(used%name)//"' has no *DENSITY", &
+                  cure='a *DYNAMIC step needs the density')
          end if
       end associate
    end subroutine check_material
@@ -247,8 +247,8 @@ contains
       section%interaction = find_named(model%interactions, name)
       if (section%interaction == 0) then
          call fail_at(error, model%source, parameter_place(card, 'INTERACTION'), &
-            'no such surface interaction: '//trim(name), &
-            cure='define it with *SURFACE INTERACTION; '//advice(name, model%interactions%name))
+               'no such surface interaction: '//trim(name), &
+               cure='define it with *SURFACE INTERACTION; '//advice(name, model%interactions%name))
          return
       end if
       call only_line(fields, deck, card, 4, model%source, error)
@@ -259,7 +259,7 @@ contains
       if (fields%n == 1) return
       if (norm2(values(2:)) <= 0.0_wp) then
          call fail_at(error, model%source, field_place(fields, 2), 'the normal has no length', &
-            cure='write nx, ny, nz, or leave them out')
+               cure='write nx, ny, nz, or leave them out')
          return
       end if
       section%normal = values(2:)/norm2(values(2:))
@@ -278,9 +278,9 @@ contains
          other = model%elements%section(e)
          if (other > 0) then
             call fail_at(error, model%source, parameter_place(card, 'ELSET'), 'element '// &
-               to_text(model%elements%id(e))//' has two sections, the first at '// &
-               line_text(model%source, model%sections(other)%place), &
-               cure='let the sets of the two have no element in common')
+                  to_text(model%elements%id(e))//' has two sections, the first at '// &
+                  line_text(model%source, model%sections(other)%place), &
+                  cure='let the sets of the two have no element in common')
             return
          end if
          model%elements%section(e) = n
@@ -295,9 +295,9 @@ contains
       do e = 1, model%elements%n
          if (model%elements%section(e) > 0) cycle
          call fail_at(error, model%source, model%elements%place(e), 'element '// &
-            to_text(model%elements%id(e))//' ('//trim(kind_names(model%elements%kind(e)))// &
-            ') has no section', &
-            cure='put it into a set that a '//section_card(model%elements%kind(e))//' card names')
+               to_text(model%elements%id(e))//' ('//trim(kind_names(model%elements%kind(e)))// &
+               ') has no section', &
+               cure='put it into a set that a '//section_card(model%elements%kind(e))//' card names')
          return
       end do
    end subroutine check_complete

@@ -44,10 +44,10 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       call read_family(model%node_sets, 'node', ['NSET', 'NODE'], 'NSET', &
-         model%nodes%index_of, deck, model%source, error)
+            model%nodes%index_of, deck, model%source, error)
       if (allocated(error)) return
       call read_family(model%element_sets, 'element', ['ELSET  ', 'ELEMENT'], 'ELSET', &
-         model%elements%index_of, deck, model%source, error)
+            model%elements%index_of, deck, model%source, error)
    end subroutine read_sets
 
    !> The sets of nodes or of elements, from their own cards and those that define members.
@@ -193,7 +193,7 @@ contains
       member = index_of%find(id)
       if (member == 0) then
          call fail_at(error, source, place, 'no such '//trim(family%what)//': '//to_text(id), &
-            cure='members of a set must be defined')
+               cure='members of a set must be defined')
          return
       end if
       associate (draft => family%drafts(set))
@@ -216,8 +216,8 @@ contains
       part = find_named(family%sets(:family%n), name)
       if (part == 0) then
          call fail_at(error, source, field_place(fields, k), &
-            'no such '//trim(family%what)//' set: '//trim(name), &
-            cure=advice(name, family%sets(:family%n)%name))
+               'no such '//trim(family%what)//' set: '//trim(name), &
+               cure=advice(name, family%sets(:family%n)%name))
          return
       end if
       associate (draft => family%drafts(set))
@@ -248,18 +248,18 @@ contains
       if (allocated(error)) return
       if (first < 1) then
          call fail_at(error, source, field_place(fields, 1), 'ids are positive', &
-            cure='write first, last[, step]')
+               cure='write first, last[, step]')
       else if (last < first) then
          call fail_at(error, source, field_place(fields, 2), &
-            'the last of the range is below the first', cure='write first, last[, step]')
+               'the last of the range is below the first', cure='write first, last[, step]')
       else if (step < 1) then
          call fail_at(error, source, field_place(fields, 3), &
-            'the step of the range must be positive', cure='write first, last[, step]')
+               'the step of the range must be positive', cure='write first, last[, step]')
       end if
       if (allocated(error)) return
       do i = 0, (last - first)/step
          call add_member(family, set, first + i*step, index_of, field_place(fields, 1), &
-            source, error)
+               source, error)
          if (allocated(error)) return
       end do
    end subroutine add_range
@@ -280,8 +280,8 @@ contains
          part = family%drafts(set)%parts(k)
          if (family%drafts(part)%state == 1) then
             call fail_at(error, source, family%drafts(set)%part_places(k), &
-               'set loop: '//trim(family%sets(part)%name)//' contains itself', &
-               cure='a set must not contain itself, directly or through others')
+                  'set loop: '//trim(family%sets(part)%name)//' contains itself', &
+                  cure='a set must not contain itself, directly or through others')
             return
          end if
          call resolve(family, part, source, error)

@@ -39,7 +39,7 @@ contains
       integer :: unit, status
 
       open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
-         action='read', iostat=status, iomsg=reason)
+            action='read', iostat=status, iomsg=reason)
       if (status /= 0) then
          call new_error(error, status_file, "cannot open '"//path//"': "//trim(reason))
          return
@@ -113,7 +113,7 @@ contains
          place%column = column
          place%length = 1
          call fail_at(error, source, place, 'this is not a text file: it holds a control byte', &
-            cure='decks are plain text (ASCII or UTF-8)')
+               cure='decks are plain text (ASCII or UTF-8)')
          return
       end do
    end subroutine check_bytes

@@ -31,8 +31,8 @@ contains
       axial = kinds == element_springa .or. kinds == element_dashpota
       if (any(axial) .and. .not. all(axial)) then
          call fail_at(error, source, parameter_place(card, 'ELSET'), &
-            'the set mixes elements along their axis with elements along freedoms', &
-            cure='give each type a set of its own')
+               'the set mixes elements along their axis with elements along freedoms', &
+               cure='give each type a set of its own')
          return
       end if
       line = card%first
@@ -101,11 +101,11 @@ contains
       if (section%kind == section_spring) what = 'stiffness'
       if (line > card%last) then
          call fail_at(error, source, deck%data(card%last), 'no line with the '//what, &
-            cure='write the '//what//' on the line after')
+               cure='write the '//what//' on the line after')
          return
       else if (line < card%last) then
          call fail_at(error, source, deck%data(line + 1), 'one line too many', &
-            cure='the '//what//' takes one line; without NONLINEAR it is one number')
+               cure='the '//what//' takes one line; without NONLINEAR it is one number')
          return
       end if
       call split_line(fields, deck, card, line, source, error)
@@ -134,7 +134,7 @@ contains
       n = card%last - first + 1
       if (n < 2) then
          call fail_at(error, source, deck%data(card%last), &
-            'a nonlinear spring needs two pairs at least', cure='write lines of force, elongation')
+               'a nonlinear spring needs two pairs at least', cure='write lines of force, elongation')
          return
       end if
       allocate (section%force%x(n), section%force%y(n))
@@ -152,7 +152,7 @@ contains
          if (n == 1) cycle
          if (values(2) > section%force%x(n - 1)) cycle
          call fail_at(error, source, field_place(fields, 2), 'the elongations must increase', &
-            cure='order the lines of force, elongation by elongation')
+               cure='order the lines of force, elongation by elongation')
          return
       end do
    end subroutine read_law

@@ -52,7 +52,7 @@ contains
       call read_boundaries(step%boundaries, model, deck, s, error)
       if (allocated(error)) return
       call read_initial_conditions(step%initial_displacements, step%initial_velocities, model, &
-         deck, s, error)
+            deck, s, error)
       if (allocated(error)) return
       call read_loads(step%loads, model, deck, s, error)
       if (allocated(error)) return
@@ -88,10 +88,12 @@ contains
             call get_name_parameter(deck%cards(i), 'NAME', step%name, model%source, error)
             if (allocated(error)) return
             call get_integer_parameter(deck%cards(i), 'INC', 1, step%max_increments, &
-               model%source, error)
+                  model%source, error)
          case ('STATIC', 'DYNAMIC')
             n = n + 1
             call read_procedure(step, n, model, deck, deck%cards(i), error)
+         case default
+            cycle
          end select
          if (allocated(error)) return
       end do
@@ -109,7 +111,7 @@ contains
 
       if (n > 1) then
          call fail_at(error, model%source, card%place, 'this step has a procedure already', &
-            cure='write one of *STATIC and *DYNAMIC in a step')
+               cure='write one of *STATIC and *DYNAMIC in a step')
          return
       end if
       step%procedure_place = card%place
@@ -124,7 +126,7 @@ contains
       call read_times(step, deck, card, model%source, error)
    end subroutine read_procedure
 
-   !> dt, T; a static step has 1, 1 without the line.
+   !> dt, T; only a static step may lack the line, it has 1, 1 then.
    subroutine read_times(step, deck, card, source, error)
       type(step_type), intent(inout) :: step
       type(deck_type), intent(in) :: deck
@@ -137,9 +139,6 @@ contains
       if (card%last < card%first) then
          step%dt = 1.0_wp
          step%duration = 1.0_wp
-         if (step%procedure == procedure_dynamic) call fail_at(error, source, card%place, &
-               '*DYNAMIC needs a line with the time step and the duration', &
-               cure='a line is: dt, T')
          return
       end if
       call only_line(fields, deck, card, 2, source, error)
@@ -151,10 +150,10 @@ contains
       step%time_place = fields%place
       if (step%dt <= 0.0_wp) then
          call fail_at(error, source, field_place(fields, 1), 'the time step must be positive', &
-            cure='a line is: dt, T')
+               cure='a line is: dt, T')
       else if (step%duration < step%dt) then
          call fail_at(error, source, field_place(fields, 2), &
-            'the duration must not be shorter than the time step', cure='a line is: dt, T')
+               'the duration must not be shorter than the time step', cure='a line is: dt, T')
       end if
    end subroutine read_times
 
@@ -168,7 +167,7 @@ contains
 
       if (.not. step%direct) then
          call fail_at(error, model%source, card%place, &
-            'automatic increments are known but do not work yet', cure='write *DYNAMIC, DIRECT')
+               '*DYNAMIC with automatic increments is known but does not work yet', cure='write *DYNAMIC, DIRECT')
          return
       end if
       step%explicit = has_parameter(card, 'EXPLICIT')
@@ -176,7 +175,7 @@ contains
       if (allocated(error)) return
       if (step%alpha < -third - epsilon(third) .or. step%alpha > 0.0_wp) then
          call fail_at(error, model%source, parameter_place(card, 'ALPHA'), &
-            'ALPHA is out of range', cure='write a number from -1/3 to 0')
+               'ALPHA is out of range', cure='write a number from -1/3 to 0')
          return
       end if
       step%gamma = 0.5_wp - step%alpha
@@ -188,10 +187,10 @@ contains
       if (allocated(error)) return
       if (step%gamma < 0.5_wp) then
          call fail_at(error, model%source, parameter_place(card, 'GAMMA'), &
-            'GAMMA below 1/2 is unstable', cure='write GAMMA >= 0.5')
+               'GAMMA below 1/2 is unstable', cure='write GAMMA >= 0.5')
       else if (step%beta < 0.0_wp .or. step%beta > 0.5_wp) then
          call fail_at(error, model%source, parameter_place(card, 'BETA'), &
-            'BETA is out of range', cure='write a number from 0 to 0.5')
+               'BETA is out of range', cure='write a number from 0 to 0.5')
       else
          call check_schemes(step, model, card, error)
       end if
@@ -208,14 +207,14 @@ contains
       if (step%explicit) then
          if (step%beta > 0.0_wp) then
             call fail_at(error, model%source, parameter_place(card, 'BETA'), &
-               'EXPLICIT means beta = 0', cure='remove BETA, or EXPLICIT')
+                  'EXPLICIT means beta = 0', cure='remove BETA, or EXPLICIT')
          else if (abs(step%alpha) > 0.0_wp) then
             call fail_at(error, model%source, parameter_place(card, 'ALPHA'), &
-               'ALPHA means nothing with EXPLICIT', cure='remove ALPHA, or EXPLICIT')
+                  'ALPHA means nothing with EXPLICIT', cure='remove ALPHA, or EXPLICIT')
          else if (any(model%groups%mass == mass_consistent)) then
             call fail_at(error, model%source, parameter_place(card, 'EXPLICIT'), &
-               'an element group has MASS=CONSISTENT, explicit steps need lumped masses', &
-               cure='write MASS=LUMPED, or remove EXPLICIT')
+                  'an element group has MASS=CONSISTENT, explicit steps need lumped masses', &
+                  cure='write MASS=LUMPED, or remove EXPLICIT')
          end if
       else if (step%beta <= 0.0_wp) then
          e = first_implicit(model)
@@ -235,8 +234,9 @@ contains
       allocate (implicit_one(model%elements%n))
       implicit_one = model%elements%kind /= element_mass .and. model%elements%kind /= element_gap
       do i = 1, size(model%groups)
-         if (model%groups(i)%scheme == scheme_explicit) &
+         if (model%groups(i)%scheme == scheme_explicit) then
             implicit_one(model%element_sets(model%groups(i)%set)%members) = .false.
+         end if
       end do
       do e = 1, model%elements%n
          if (implicit_one(e)) return
@@ -264,8 +264,8 @@ contains
          n = n + 1
          if (n > 1 .and. (is_new .neqv. choice == 2)) then
             call fail_at(error, model%source, parameter_place(deck%cards(i), 'OP'), &
-               'the *'//keyword//' cards of a step must have the same OP', &
-               cure='write OP=NEW on all of them or on none')
+                  'the *'//keyword//' cards of a step must have the same OP', &
+                  cure='write OP=NEW on all of them or on none')
             return
          end if
          is_new = choice == 2

@@ -39,6 +39,8 @@ contains
          case ('RIGIDSURFACE')
             n_rigid = n_rigid + 1
             call read_rigid_surface(model, n_rigid, deck, deck%cards(i), error)
+         case default
+            cycle
          end select
          if (allocated(error)) return
       end do
@@ -55,7 +57,7 @@ contains
       if (allocated(error)) return
       if (find_named(model%surfaces, name) + find_named(model%rigid_surfaces, name) == 0) return
       call fail_at(error, model%source, parameter_place(card, 'NAME'), &
-         "surface '"//trim(name)//"' is defined twice", cure='give every surface its own name')
+            "surface '"//trim(name)//"' is defined twice", cure='give every surface its own name')
    end subroutine get_new_name
 
    subroutine read_surface(model, n, deck, card, error)
@@ -65,7 +67,7 @@ contains
       type(card_type), intent(in) :: card
       type(error_type), allocatable, intent(out) :: error
       character(len=word_length), parameter :: types(*) = [character(len=word_length) :: &
-         'NODE', '~ELEMENT']
+            'NODE', '~ELEMENT']
       type(fields_type) :: fields
       character(len=name_length) :: name
       integer, allocatable :: nodes(:), more(:)
@@ -98,7 +100,7 @@ contains
       type(card_type), intent(in) :: card
       type(error_type), allocatable, intent(out) :: error
       character(len=word_length), parameter :: types(*) = [character(len=word_length) :: &
-         'PLANE', '~CIRCLE']
+            'PLANE', '~CIRCLE']
       character(len=name_length) :: name
       integer :: choice, n_lines
       real(wp) :: point(3), normal(3), motion(4)
@@ -115,8 +117,8 @@ contains
       if (model%rigid_surfaces(n)%amplitude > 0) n_lines = 3
       if (card%last - card%first + 1 /= n_lines) then
          call fail_at(error, model%source, deck%data(min(card%last, card%first + n_lines)), &
-            'this card takes '//to_text(n_lines)//' data lines', &
-            cure='the point, the normal, and with AMPLITUDE the direction and size of its motion')
+               'this card takes '//to_text(n_lines)//' data lines', &
+               cure='the point, the normal, and with AMPLITUDE the direction and size of its motion')
          return
       end if
       call read_vector(model, deck, card, 1, point, error)
@@ -164,8 +166,9 @@ contains
 
       n = 0
       do i = 1, deck%n_cards
-         if (deck%cards(i)%keyword == 'CONTACTPAIR') &
+         if (deck%cards(i)%keyword == 'CONTACTPAIR') then
             n = n + deck%cards(i)%last - deck%cards(i)%first + 1
+         end if
       end do
       allocate (model%pairs(n))
       n = 0
@@ -183,7 +186,7 @@ contains
       type(card_type), intent(in) :: card
       type(error_type), allocatable, intent(out) :: error
       character(len=word_length), parameter :: types(*) = [character(len=word_length) :: &
-         'NODE TO SURFACE', '~SURFACE TO SURFACE']
+            'NODE TO SURFACE', '~SURFACE TO SURFACE']
       character(len=word_length), parameter :: passes(*) = [character(len=word_length) :: '1', '~2']
       type(fields_type) :: fields
       character(len=name_length) :: name
@@ -198,8 +201,8 @@ contains
       interaction = find_named(model%interactions, name)
       if (interaction == 0) then
          call fail_at(error, model%source, parameter_place(card, 'INTERACTION'), &
-            'no such surface interaction: '//trim(name), &
-            cure='define it with *SURFACE INTERACTION; '//advice(name, model%interactions%name))
+               'no such surface interaction: '//trim(name), &
+               cure='define it with *SURFACE INTERACTION; '//advice(name, model%interactions%name))
          return
       end if
       do line = card%first, card%last
@@ -231,20 +234,20 @@ contains
       if (model%pairs(n)%contactor == 0) then
          if (find_named(model%rigid_surfaces, slave) > 0) then
             call fail_at(error, model%source, field_place(fields, 1), &
-               'a rigid surface cannot be the slave', cure='write: slave, rigid surface')
+                  'a rigid surface cannot be the slave', cure='write: slave, rigid surface')
          else
             call fail_at(error, model%source, field_place(fields, 1), 'no such surface: '// &
-               trim(slave), cure='define it with *SURFACE; '//advice(slave, model%surfaces%name))
+                  trim(slave), cure='define it with *SURFACE; '//advice(slave, model%surfaces%name))
          end if
       else if (model%pairs(n)%rigid_target == 0) then
          if (find_named(model%surfaces, master) > 0) then
             call fail_at(error, model%source, field_place(fields, 2), &
-               'a surface of nodes cannot be the master', &
-               cure='name a *RIGID SURFACE; deformable masters do not work yet')
+                  'a surface of nodes cannot be the master', &
+                  cure='name a *RIGID SURFACE; deformable masters do not work yet')
          else
             call fail_at(error, model%source, field_place(fields, 2), 'no such rigid surface: '// &
-               trim(master), &
-               cure='define it with *RIGID SURFACE; '//advice(master, model%rigid_surfaces%name))
+                  trim(master), &
+                  cure='define it with *RIGID SURFACE; '//advice(master, model%rigid_surfaces%name))
          end if
       end if
    end subroutine read_pair

@@ -4,7 +4,7 @@ module symbols
    use errors, only: error_type, new_error, status_usage
    use places, only: place_type, source_type, fail_at
    use properties, only: name_length
-   use words, only: squeezed, find_word, advice
+   use words, only: squeezed, advice
    use numbers, only: parse_real
    use cards, only: deck_type, card_type, symbol_type
    implicit none
@@ -29,8 +29,9 @@ contains
 
       n = 0
       do i = 1, deck%n_cards
-         if (deck%cards(i)%keyword == 'PARAMETER') &
+         if (deck%cards(i)%keyword == 'PARAMETER') then
             n = n + deck%cards(i)%last - deck%cards(i)%first + 1
+         end if
       end do
       allocate (deck%symbols(n))
       n = 0
@@ -59,23 +60,23 @@ contains
       symbol%place = place
       if (equals == 0) then
          call fail_at(error, source, place, 'a parameter without a value', &
-            cure='a line is: name = number')
+               cure='a line is: name = number')
          return
       end if
       name = squeezed(line(:equals - 1))
       symbol%value = trim(adjustl(squeezed(line(equals + 1:))))
       if (name == '' .or. len(name) > name_length .or. scan(name, '<>,') > 0) then
          call fail_at(error, source, place, "'"//name//"' is no name for a parameter", &
-            cure='a line is: name = number')
+               cure='a line is: name = number')
          return
       end if
       symbol%name = name
       call parse_real(symbol%value, number, cause)
       if (allocated(cause)) then
          call fail_at(error, source, place, cause, cure='a line is: name = number')
-      else if (find_word(name, earlier%name) > 0) then
+      else if (find_symbol(earlier, name) > 0) then
          call fail_at(error, source, place, "parameter '"//name//"' is defined twice", &
-            cure='keep one of the two')
+               cure='keep one of the two')
       end if
    end subroutine read_symbol
 
@@ -89,7 +90,7 @@ contains
       integer :: i, k
 
       do i = 1, size(definitions)
-         k = find_word(definitions(i)%name, deck%symbols%name)
+         k = find_symbol(deck%symbols, definitions(i)%name)
          if (k == 0) then
             call new_error(error, status_usage, '--define '//definitions(i)%name// &
                   ': the deck declares no such *PARAMETER; '//declared(deck, definitions(i)%name))
@@ -103,6 +104,18 @@ contains
          deck%symbols(k)%value = squeezed(definitions(i)%value)
       end do
    end subroutine apply_definitions
+
+   !> Position of a name, 0 if it is not declared.
+   pure function find_symbol(list, name) result(position)
+      type(symbol_type), intent(in) :: list(:)
+      character(len=*), intent(in) :: name
+      integer :: position
+
+      do position = 1, size(list)
+         if (list(position)%name == squeezed(name)) return
+      end do
+      position = 0
+   end function find_symbol
 
    !> "allowed: A, B", or that there are none.
    pure function declared(deck, name) result(string)
@@ -133,10 +146,10 @@ contains
          closing = index(string(opening:), '>') + opening - 1
          if (closing < opening) then
             call fail_at(error, source, place, "'<' without '>'", &
-               cure='a parameter is written <name>')
+                  cure='a parameter is written <name>')
             return
          end if
-         k = find_word(string(opening + 1:closing - 1), deck%symbols%name)
+         k = find_symbol(deck%symbols, string(opening + 1:closing - 1))
          if (k == 0) then
             call fail_at(error, source, place, 'no such parameter: '// &
                   string(opening:closing), cure=declared(deck, string(opening + 1:closing - 1)))
@@ -190,8 +203,9 @@ contains
       if (index(string, '<') == 0) return
       wanted = squeezed(string)
       do i = 1, size(deck%symbols)
-         if (index(wanted, '<'//trim(deck%symbols(i)%name)//'>') > 0) &
+         if (index(wanted, '<'//trim(deck%symbols(i)%name)//'>') > 0) then
             deck%symbols(i)%used = .true.
+         end if
       end do
    end subroutine mark_used
 
