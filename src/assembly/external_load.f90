@@ -97,7 +97,7 @@ contains
       type(model_type), intent(in) :: model
       type(step_type), intent(in) :: step
       real(wp), intent(in) :: t
-      real(wp) :: earlier(structure%map%n_freedoms), pattern(structure%map%n_freedoms)
+      real(wp), dimension(structure%map%n_freedoms) :: earlier, pattern, start
       integer :: i, f, a, last
 
       earlier = 0.0_wp
@@ -107,16 +107,18 @@ contains
       end do
       do a = 0, size(model%amplitudes)
          pattern = 0.0_wp
+         start = 0.0_wp
          if (.not. any(step%loads%amplitude == a)) cycle
          do i = 1, size(step%loads)
             if (step%loads(i)%amplitude /= a) cycle
             f = structure%map%freedom(step%loads(i)%dof, step%loads(i)%node)
             pattern(f) = pattern(f) + step%loads(i)%value
+            start(f) = earlier(f)
          end do
          call append(self, kind_point, pattern)
          last = size(self%loads)
          call give_time(self%loads(last), model, a, t, step)
-         if (self%loads(last)%ramped) self%loads(last)%start = earlier
+         if (self%loads(last)%ramped) self%loads(last)%start = start
       end do
    end subroutine add_point_loads
 
