@@ -19,8 +19,8 @@ module card_rules
          'PARAMETER;any;;name = number', &
          'INCLUDE;any;INPUT=!;-', &
          'NODE;model;NSET=;id, x, y[, z]', &
-         'NSET;model;NSET=!/GENERATE;node ids and set names, or with GENERATE first, last[, step]', &
-         'ELSET;model;ELSET=!/GENERATE;element ids and set names, or with GENERATE '// &
+         'NSET;model;NSET=!/GENERATE;node ids and sets, or with GENERATE first, last[, step]', &
+         'ELSET;model;ELSET=!/GENERATE;element ids and sets, or with GENERATE '// &
          'first, last[, step]', &
          'ELEMENT;model;TYPE=!/ELSET=;id, nodes', &
          'SOLID SECTION;model;ELSET=!/MATERIAL=!/~ELEMENTS=;area', &
@@ -40,7 +40,7 @@ module card_rules
          'INITIAL CONDITIONS;both;TYPE=!;node or set, dof, value', &
          'EQUATION;model;;number of terms, then up to 4 triples of node, dof, coefficient a line', &
          'SURFACE;model;NAME=!/TYPE=!;nodes or node sets', &
-         'RIGID SURFACE;model;NAME=!/TYPE=!/AMPLITUDE=;a point x, y, z; then the outward normal '// &
+         'RIGID SURFACE;model;NAME=!/TYPE=!/AMPLITUDE=;a point x, y, z; then the normal '// &
          'nx, ny, nz; with AMPLITUDE then dx, dy, dz, size', &
          'SURFACE INTERACTION;model;NAME=!;-', &
          'IMPACT;model;METHOD=/RESTITUTION=/RETURN=/SOLUTION=/BETA=/CAPTURE=/MAX EVENTS=/'// &
@@ -100,7 +100,7 @@ contains
       card%rule = find_word(card%keyword, keywords())
       if (card%rule > 0) return
       call fail_at(error, source, card%place, "unknown keyword '*"//card%keyword//"'", &
-         cure=advice(card%keyword, keywords()))
+            cure=advice(card%keyword, keywords()))
    end subroutine check_keyword
 
    !> Checks level, parameters and the presence of data of a card whose rule is set.
@@ -149,15 +149,18 @@ contains
       type(source_type), intent(in) :: source
       type(error_type), allocatable, intent(out) :: error
       character(len=word_length), allocatable :: list(:)
-      character(len=:), allocatable :: marks
+      character(len=:), allocatable :: marks, continued
       integer :: j, k
 
+      continued = ''
       list = parameter_names(card%rule)
       associate (given => card%parameters(i))
          k = find_word(given%name, list)
          if (k == 0) then
+            if (given%place%line /= card%place%line) continued = &
+                  '; the comma at the end of the line before continues the keyword line'
             call fail_at(error, source, given%place, "unknown parameter '"//given%name// &
-                  "' of *"//trim(part(card%rule, 1)), cure=advice(given%name, list))
+                  "' of *"//trim(part(card%rule, 1)), cure=advice(given%name, list)//continued)
             return
          end if
          do j = 1, i - 1

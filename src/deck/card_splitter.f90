@@ -106,7 +106,7 @@ contains
       place%line = line
       if (deck%n_cards == 0) then
          call fail_at(error, source, place, 'data before any keyword card', &
-               cure='a deck begins with a keyword such as *HEADING or *NODE; comments begin with **')
+               cure='begin with a keyword such as *HEADING or *NODE; comments begin with **')
          return
       end if
       associate (card => deck%cards(deck%n_cards))
@@ -298,7 +298,8 @@ contains
       i = parameter_index(card, 'INPUT')
       if (i == 0 .or. size(card%parameters) /= 1) then
          call fail_at(error, source, card%place, &
-               '*INCLUDE needs the parameter INPUT, and no other', cure='write *INCLUDE, INPUT=file')
+               '*INCLUDE needs the parameter INPUT, and no other', &
+               cure='write *INCLUDE, INPUT=file')
          return
       end if
       if (.not. allocated(card%parameters(1)%value)) card%parameters(1)%value = ''
@@ -313,7 +314,7 @@ contains
       if (allocated(error)) then
          trouble = error%message
          if (error%status == status_file) call fail_at(error, source, card%parameters(1)%place, &
-            trouble, cure='the path is relative to the file that includes')
+               trouble, cure='the path is relative to the file that includes')
          return
       end if
       call split_file(deck, source, source%n_files, progress, error)

@@ -40,7 +40,7 @@ contains
          if (deck%cards(i)%keyword /= 'BOUNDARY' .or. deck%cards(i)%step /= step) cycle
          if (step == 0 .and. has_parameter(deck%cards(i), 'OP')) then
             call fail_at(error, model%source, parameter_place(deck%cards(i), 'OP'), &
-               'OP has a meaning inside a step only', cure='remove it')
+                  'OP has a meaning inside a step only', cure='remove it')
             return
          end if
          call read_boundary_card(list, n, given, model, deck, deck%cards(i), error)
@@ -202,7 +202,8 @@ contains
                call given%insert(3*item%node + item%dof, n)
             else if (abs(list(twin)%value - item%value) > 0.0_wp) then
                call fail_at(error, model%source, item%place, 'freedom '//to_text(item%dof)// &
-                     ' of node '//to_text(model%nodes%id(item%node))//' is given another value at '// &
+                     ' of node '//to_text(model%nodes%id(item%node))// &
+                     ' is given another value at '// &
                      line_text(model%source, list(twin)%place), cure='give every freedom one value')
                return
             end if

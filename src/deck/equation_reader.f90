@@ -66,7 +66,7 @@ contains
       if (n_terms < 2 .or. n_terms > 4*(card%last - line)) then
          call fail_at(error, model%source, field_place(fields, 1), &
                'the number of terms does not fit the lines that follow', &
-               cure='write the number, 2 at least, then that many triples of node, dof, coefficient')
+               cure='write the number, 2 or more, then as many triples node, dof, coefficient')
          return
       end if
       allocate (equation%node(n_terms), equation%dof(n_terms), equation%coefficient(n_terms))
@@ -200,7 +200,8 @@ contains
          other = eliminated%find(freedom_key(boundaries(i)%node, boundaries(i)%dof))
          if (other == 0) cycle
          call fail_at(error, model%source, boundaries(i)%place, 'freedom '// &
-               to_text(boundaries(i)%dof)//' of node '//to_text(model%nodes%id(boundaries(i)%node))// &
+               to_text(boundaries(i)%dof)//' of node '// &
+               to_text(model%nodes%id(boundaries(i)%node))// &
                ' is prescribed here but eliminated by the equation at '// &
                line_text(model%source, model%equations(other)%place), &
                cure='prescribe another freedom of the equation, or write that freedom first')

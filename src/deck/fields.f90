@@ -185,7 +185,8 @@ contains
 
       if (card%last > card%first) then
          call fail_at(error, source, deck%data(card%first + 1), &
-               'too many data lines: this card takes one', cure='the line is: '//usage_of(card%rule))
+               'too many data lines: this card takes one', &
+               cure='the line is: '//usage_of(card%rule))
          return
       end if
       call split_line(fields, deck, card, card%first, source, error)

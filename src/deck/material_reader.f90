@@ -64,7 +64,8 @@ contains
 
       if (n == 0) then
          call fail_at(error, model%source, card%place, &
-               '*'//card%keyword//' belongs to a material', cure='put *MATERIAL, NAME=name before it')
+               '*'//card%keyword//' belongs to a material', &
+               cure='put *MATERIAL, NAME=name before it')
          return
       end if
       select case (card%keyword)
@@ -103,7 +104,8 @@ contains
                "Young's modulus must be positive", cure='a line is: E, nu with E > 0')
       else if (values(2) <= -1.0_wp .or. values(2) >= 0.5_wp) then
          call fail_at(error, source, field_place(fields, 2), &
-               "Poisson's ratio is out of range", cure='write nu between -1 and 0.5, neither included')
+               "Poisson's ratio is out of range", &
+               cure='write nu between -1 and 0.5, neither included')
       end if
       material%has_elastic = .true.
       material%young = values(1)

@@ -20,7 +20,8 @@ module mesh_reader
    !> Element types of the deck, the kinds they become and how many nodes they have.
    character(len=word_length), parameter :: element_names(*) = [character(len=word_length) :: &
          'MASS', 'SPRING1', 'SPRING2', 'SPRINGA', 'DASHPOT1', 'DASHPOT2', 'DASHPOTA', &
-         'T2D2', 'T3D2', 'GAPUNI', '~T3D3', '~CPE3', '~CPE4', '~CPE6', '~CPE8', '~CPE4R', '~CPE8R', &
+         'T2D2', 'T3D2', 'GAPUNI', '~T3D3', '~CPE3', '~CPE4', '~CPE6', '~CPE8', '~CPE4R', &
+         '~CPE8R', &
          '~CPS3', '~CPS4', '~CPS6', '~CPS8', '~CPS4R', '~CPS8R', &
          '~CAX3', '~CAX4', '~CAX6', '~CAX8', '~CAX4R', '~CAX8R']
    integer, parameter :: kinds_of_types(n_types) = [element_mass, element_spring1, &
@@ -30,7 +31,8 @@ module mesh_reader
 
    !> Names of the element kinds, for messages.
    character(len=word_length), parameter :: kind_names(*) = [character(len=word_length) :: &
-         'MASS', 'SPRING1', 'SPRING2', 'SPRINGA', 'DASHPOT1', 'DASHPOT2', 'DASHPOTA', 'T2D2', 'GAPUNI']
+         'MASS', 'SPRING1', 'SPRING2', 'SPRINGA', 'DASHPOT1', 'DASHPOT2', 'DASHPOTA', 'T2D2', &
+         'GAPUNI']
 
 contains
 

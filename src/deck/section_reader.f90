@@ -297,7 +297,8 @@ contains
          call fail_at(error, model%source, model%elements%place(e), 'element '// &
                to_text(model%elements%id(e))//' ('//trim(kind_names(model%elements%kind(e)))// &
                ') has no section', &
-               cure='put it into a set that a '//section_card(model%elements%kind(e))//' card names')
+               cure='put it into a set that a '//section_card(model%elements%kind(e))// &
+               ' card names')
          return
       end do
    end subroutine check_complete

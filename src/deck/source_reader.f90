@@ -41,7 +41,8 @@ contains
       open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
             action='read', iostat=status, iomsg=reason)
       if (status /= 0) then
-         call new_error(error, status_file, "cannot open '"//path//"': "//trim(reason))
+         call new_error(error, status_file, "cannot open '"//path//"':"// &
+               trim(reason(index(reason, ': ', back=.true.) + 1:)))
          return
       end if
       inquire (unit=unit, size=length)

@@ -134,7 +134,8 @@ contains
       n = card%last - first + 1
       if (n < 2) then
          call fail_at(error, source, deck%data(card%last), &
-               'a nonlinear spring needs two pairs at least', cure='write lines of force, elongation')
+               'a nonlinear spring needs two pairs at least', &
+               cure='write lines of force, elongation')
          return
       end if
       allocate (section%force%x(n), section%force%y(n))

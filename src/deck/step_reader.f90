@@ -167,7 +167,8 @@ contains
 
       if (.not. step%direct) then
          call fail_at(error, model%source, card%place, &
-               '*DYNAMIC with automatic increments is known but does not work yet', cure='write *DYNAMIC, DIRECT')
+               '*DYNAMIC with automatic increments is known but does not work yet', &
+               cure='write *DYNAMIC, DIRECT')
          return
       end if
       step%explicit = has_parameter(card, 'EXPLICIT')

@@ -118,7 +118,7 @@ contains
       if (card%last - card%first + 1 /= n_lines) then
          call fail_at(error, model%source, deck%data(min(card%last, card%first + n_lines)), &
                'this card takes '//to_text(n_lines)//' data lines', &
-               cure='the point, the normal, and with AMPLITUDE the direction and size of its motion')
+               cure='point, normal, and with AMPLITUDE direction and size of the motion')
          return
       end if
       call read_vector(model, deck, card, 1, point, error)

@@ -48,10 +48,11 @@ contains
       position = 0
    end function find_word
 
-   !> "did you mean X? allowed: A, B, C".
+   !> "did you mean X? allowed: A, B, C"; of a very long list the first words.
    pure function advice(word, list) result(string)
       character(len=*), intent(in) :: word, list(:)
       character(len=:), allocatable :: string
+      integer, parameter :: most = 60
       integer :: i, nearest, distance, least
 
       nearest = 0
@@ -64,11 +65,15 @@ contains
       end do
       string = ''
       if (nearest > 0) string = "did you mean '"//trim(list(nearest))//"'? "
-      if (size(list) == 0) return
+      if (size(list) == 0) then
+         string = 'none is defined'
+         return
+      end if
       string = string//'allowed: '//trim(list(1))
-      do i = 2, size(list)
+      do i = 2, min(size(list), most)
          string = string//', '//trim(list(i))
       end do
+      if (size(list) > most) string = string//', ...'
    end function advice
 
    !> Letters to insert, drop or replace to make one word the other (Levenshtein).

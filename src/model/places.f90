@@ -92,10 +92,43 @@ contains
       line = source%files(place%file)%lines(place%line)%text
       first = max(1, place%column)
       length = place%length
-      if (place%column == 0) length = len_trim(line)
-      message = message//new_line('a')//'        '//printable(line)// &
-            new_line('a')//'        '//repeat(' ', first - 1)//repeat('^', max(1, length))
+      if (place%column == 0) then
+         first = max(1, verify(line, ' '//achar(9)))
+         length = len_trim(line) - first + 1
+      end if
+      message = message//new_line('a')//marked(line, first, max(1, length))
    end function place_text
+
+   !> A line with carets below a stretch of it; of a very long line the part around the stretch.
+   pure function marked(line, first, length) result(lines)
+      character(len=*), intent(in) :: line
+      integer, intent(in) :: first, length
+      character(len=:), allocatable :: lines
+      integer, parameter :: longest = 160
+      integer :: start, finish
+
+      start = 1
+      finish = len_trim(line)
+      if (finish > longest) then
+         start = max(1, first - longest/2)
+         finish = min(finish, start + longest - 1)
+      end if
+      lines = '        '//printable(line(start:finish))//new_line('a')// &
+            '        '//repeat(' ', columns(line(start:min(first - 1, len(line)))))// &
+            repeat('^', max(1, columns(line(first:min(first + length - 1, finish)))))
+   end function marked
+
+   !> Columns that a text takes: the bytes that continue a UTF-8 character take none.
+   pure function columns(string) result(n)
+      character(len=*), intent(in) :: string
+      integer :: n
+      integer :: i
+
+      n = 0
+      do i = 1, len(string)
+         if (iachar(string(i:i)) < 128 .or. iachar(string(i:i)) > 191) n = n + 1
+      end do
+   end function columns
 
    pure function is_known(source, place) result(known)
       type(source_type), intent(in) :: source

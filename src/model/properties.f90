@@ -43,12 +43,12 @@ module properties
       integer :: set = 0                       !! index of the element set
       integer :: material = 0                  !! index of the material, solid sections
       real(wp) :: area = 0.0_wp                !! truss area or plane thickness
-      integer :: dof(2) = 0                    !! directions at its nodes, SPRING and DASHPOT 1 and 2
+      integer :: dof(2) = 0                    !! directions at its nodes, springs and dashpots 1, 2
       real(wp) :: coefficient = 0.0_wp         !! k of a linear spring, c of a dashpot, m of a mass
       logical :: nonlinear = .false.
       type(table_type) :: force                !! force y over elongation x of a nonlinear spring
       real(wp) :: clearance = 0.0_wp           !! initial opening of a gap element
-      real(wp) :: normal(3) = 0.0_wp           !! unit normal of a gap, from its node 1 to its node 2
+      real(wp) :: normal(3) = 0.0_wp           !! unit normal of a gap, from its node 1 to node 2
       integer :: interaction = 0               !! index of the surface interaction of a gap
       type(place_type) :: place
    end type section_type
