@@ -122,7 +122,7 @@ contains
       amplitude = find_named(model%amplitudes, name)
       if (amplitude == 0) call fail_at(error, model%source, parameter_place(card, 'AMPLITUDE'), &
             'no such amplitude: '//trim(name), &
-            cure='define it with *AMPLITUDE; '//advice(name, model%amplitudes%name))
+            cure='define it with *AMPLITUDE; '//advice(name, [model%amplitudes%name]))
    end subroutine find_amplitude
 
 end module amplitude_reader

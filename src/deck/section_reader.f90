@@ -180,7 +180,7 @@ contains
       if (section%material == 0) then
          call fail_at(error, model%source, parameter_place(card, 'MATERIAL'), &
                'no such material: '//trim(name), &
-               cure='define it with *MATERIAL; '//advice(name, model%materials%name))
+               cure='define it with *MATERIAL; '//advice(name, [model%materials%name]))
          return
       end if
       call check_material(model, deck, card, section%material, error)
@@ -248,7 +248,7 @@ contains
       if (section%interaction == 0) then
          call fail_at(error, model%source, parameter_place(card, 'INTERACTION'), &
                'no such surface interaction: '//trim(name), &
-               cure='define it with *SURFACE INTERACTION; '//advice(name, model%interactions%name))
+               cure='define it with *SURFACE INTERACTION; '//advice(name, [model%interactions%name]))
          return
       end if
       call only_line(fields, deck, card, 4, model%source, error)

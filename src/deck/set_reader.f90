@@ -217,7 +217,7 @@ contains
       if (part == 0) then
          call fail_at(error, source, field_place(fields, k), &
                'no such '//trim(family%what)//' set: '//trim(name), &
-               cure=advice(name, family%sets(:family%n)%name))
+               cure=advice(name, [family%sets(:family%n)%name]))
          return
       end if
       associate (draft => family%drafts(set))
@@ -328,7 +328,7 @@ contains
 
       set = find_named(model%node_sets, name)
       if (set == 0) call fail_at(error, model%source, place, 'no such node set: '//trim(name), &
-            cure='define it with *NSET; '//advice(name, model%node_sets%name))
+            cure='define it with *NSET; '//advice(name, [model%node_sets%name]))
    end subroutine find_node_set
 
    !> Index of an element set by its name.
@@ -341,7 +341,7 @@ contains
 
       set = find_named(model%element_sets, name)
       if (set == 0) call fail_at(error, model%source, place, 'no such element set: '//trim(name), &
-            cure='define it with *ELSET; '//advice(name, model%element_sets%name))
+            cure='define it with *ELSET; '//advice(name, [model%element_sets%name]))
    end subroutine find_element_set
 
 end module set_reader

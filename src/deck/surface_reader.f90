@@ -202,7 +202,7 @@ contains
       if (interaction == 0) then
          call fail_at(error, model%source, parameter_place(card, 'INTERACTION'), &
                'no such surface interaction: '//trim(name), &
-               cure='define it with *SURFACE INTERACTION; '//advice(name, model%interactions%name))
+               cure='define it with *SURFACE INTERACTION; '//advice(name, [model%interactions%name]))
          return
       end if
       do line = card%first, card%last
@@ -237,7 +237,7 @@ contains
                   'a rigid surface cannot be the slave', cure='write: slave, rigid surface')
          else
             call fail_at(error, model%source, field_place(fields, 1), 'no such surface: '// &
-                  trim(slave), cure='define it with *SURFACE; '//advice(slave, model%surfaces%name))
+                  trim(slave), cure='define it with *SURFACE; '//advice(slave, [model%surfaces%name]))
          end if
       else if (model%pairs(n)%rigid_target == 0) then
          if (find_named(model%surfaces, master) > 0) then
@@ -247,7 +247,7 @@ contains
          else
             call fail_at(error, model%source, field_place(fields, 2), 'no such rigid surface: '// &
                   trim(master), &
-                  cure='define it with *RIGID SURFACE; '//advice(master, model%rigid_surfaces%name))
+                  cure='define it with *RIGID SURFACE; '//advice(master, [model%rigid_surfaces%name]))
          end if
       end if
    end subroutine read_pair

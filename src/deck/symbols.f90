@@ -124,7 +124,7 @@ contains
       character(len=:), allocatable :: string
 
       string = 'it declares none'
-      if (size(deck%symbols) > 0) string = advice(name, deck%symbols%name)
+      if (size(deck%symbols) > 0) string = advice(name, [deck%symbols%name])
    end function declared
 
    !> A text with every <name> replaced by its value.
