@@ -6,7 +6,8 @@ module energy_ledger
    use structure, only: strain_energy, damping_force, inertia_force
    use external_load, only: load_at
    use motion_state, only: state_type
-   use equation_of_motion, only: system_type, force_balance
+   use equation_of_motion, only: system_type
+   use reactions, only: reaction_forces
    implicit none
    private
 
@@ -60,22 +61,21 @@ contains
          self%damping = self%damping + dot_product(delta_d, force)/2.0_wp
       end if
       if (size(system%motions%motions) == 0) return
-      call record_reactions(self, system, from, to, contact_from + contact_to)
+      call record_reactions(self, system, from, to, contact_from, contact_to)
    end subroutine record_span
 
    !> Work of the reactions where a freedom is moved.
-   subroutine record_reactions(self, system, from, to, contact)
+   subroutine record_reactions(self, system, from, to, contact_from, contact_to)
       type(ledger_type), intent(inout) :: self
       type(system_type), intent(in) :: system
       type(state_type), intent(in) :: from, to
-      real(wp), intent(in) :: contact(:)         !! sum of the contact forces at both ends
-      real(wp) :: moved(size(from%d)), reaction(size(from%d))
+      real(wp), intent(in) :: contact_from(:), contact_to(:)
+      real(wp) :: moved(size(from%d))
 
       moved = merge(to%d - from%d, 0.0_wp, system%structure%map%prescribed)
       if (.not. any(abs(moved) > 0.0_wp)) return
-      reaction = -force_balance(system, from) - force_balance(system, to) - contact
-      if (.not. system%static) reaction = reaction + inertia_force(system%structure, from%a + to%a)
-      self%external_work = self%external_work + dot_product(moved, reaction)/2.0_wp
+      self%external_work = self%external_work + dot_product(moved, &
+            reaction_forces(system, from, contact_from) + reaction_forces(system, to, contact_to))/2.0_wp
    end subroutine record_reactions
 
    !> An impact: what it takes from the bodies and what a moving wall gives.

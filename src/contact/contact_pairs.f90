@@ -1,0 +1,157 @@
+!> Contact rows: for every pair of things that may touch, the gap g = sum c_k u_k + g0 + s(t) as a
+!> linear form of displacements (G d + g0), g < 0 meaning overlap. Small rotations: normals are
+!> fixed.
+module contact_pairs
+   use kinds, only: wp
+   use errors, only: error_type
+   use text, only: to_text
+   use places, only: place_type, fail_at
+   use mesh, only: element_gap
+   use properties, only: name_length
+   use model, only: model_type
+   use gap_normals, only: gap_normal
+   implicit none
+   private
+
+   public :: contact_row_type, contact_pair_list_type, find_contact_rows
+
+   !> One node against a rigid plane, or one gap element.
+   type :: contact_row_type
+      integer :: pair = 0                        !! index into the pair names
+      integer :: node = 0                        !! index of the contactor node
+      integer :: interaction = 0                 !! index into the model's, 0: default
+      integer :: n_terms = 0
+      integer :: term_node(6) = 0, term_dof(6) = 0
+      real(wp) :: coefficient(6) = 0.0_wp
+      real(wp) :: normal(3) = 0.0_wp             !! direction of a positive contact force on `node`
+      real(wp) :: offset = 0.0_wp                !! g0
+      integer :: amplitude = 0                   !! of a moving plane, 0: at rest
+      real(wp) :: motion = 0.0_wp                !! change of the gap at amplitude 1
+      type(place_type) :: place
+   end type contact_row_type
+
+   !> All rows, and the names of the pairs they belong to.
+   type :: contact_pair_list_type
+      type(contact_row_type), allocatable :: rows(:)
+      character(len=2*name_length + 1), allocatable :: names(:)
+   end type contact_pair_list_type
+
+contains
+
+   !> Rows of all contact pairs, node by node, then of all gap elements.
+   subroutine find_contact_rows(model, list, error)
+      type(model_type), intent(in) :: model
+      type(contact_pair_list_type), intent(out) :: list
+      type(error_type), allocatable, intent(out) :: error
+      integer :: p, i, n, e
+
+      n = count(model%elements%kind(:model%elements%n) == element_gap)
+      do p = 1, size(model%pairs)
+         n = n + size(model%surfaces(model%pairs(p)%contactor)%nodes)
+      end do
+      allocate (list%rows(n), list%names(0))
+      n = 0
+      do p = 1, size(model%pairs)
+         call append_name(list, trim(model%surfaces(model%pairs(p)%contactor)%name)//'-' &
+               //model%rigid_surfaces(model%pairs(p)%rigid_target)%name)
+         do i = 1, size(model%surfaces(model%pairs(p)%contactor)%nodes)
+            n = n + 1
+            call make_plane_row(model, p, i, list%rows(n))
+         end do
+      end do
+      do e = 1, model%elements%n
+         if (model%elements%kind(e) /= element_gap) cycle
+         n = n + 1
+         call append_name(list, trim(model%element_sets(model%sections(model%elements%section(e)) &
+               %set)%name))
+         call make_gap_row(model, e, list%rows(n), error)
+         if (allocated(error)) return
+         list%rows(n)%pair = pair_index(list)
+      end do
+   end subroutine find_contact_rows
+
+   !> Appends the name of a pair unless it was the last one.
+   subroutine append_name(list, name)
+      type(contact_pair_list_type), intent(inout) :: list
+      character(len=*), intent(in) :: name
+      character(len=2*name_length + 1), allocatable :: longer(:)
+      integer :: n
+
+      n = size(list%names)
+      if (n > 0) then
+         if (list%names(n) == name) return
+      end if
+      allocate (longer(n + 1))
+      longer(:n) = list%names
+      longer(n + 1) = name
+      call move_alloc(longer, list%names)
+   end subroutine append_name
+
+   pure function pair_index(list) result(pair)
+      type(contact_pair_list_type), intent(in) :: list
+      integer :: pair
+
+      pair = size(list%names)
+   end function pair_index
+
+   !> g = n . (x + u - x_plane - s(t)).
+   pure subroutine make_plane_row(model, pair, i, row)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: pair, i
+      type(contact_row_type), intent(out) :: row
+
+      row%pair = pair
+      row%interaction = model%pairs(pair)%interaction
+      row%place = model%pairs(pair)%place
+      row%node = model%surfaces(model%pairs(pair)%contactor)%nodes(i)
+      associate (plane => model%rigid_surfaces(model%pairs(pair)%rigid_target))
+         row%normal = plane%normal
+         row%offset = dot_product(plane%normal, model%nodes%x(:, row%node) - plane%point)
+         row%amplitude = plane%amplitude
+         row%motion = -dot_product(plane%normal, plane%motion)
+      end associate
+      call add_terms(row, row%node, row%normal)
+   end subroutine make_plane_row
+
+   !> g = clearance + n . (u2 - u1), n from node 1 to node 2.
+   subroutine make_gap_row(model, e, row, error)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: e
+      type(contact_row_type), intent(out) :: row
+      type(error_type), allocatable, intent(out) :: error
+      integer :: first
+      real(wp) :: normal(3)
+
+      first = model%elements%first(e)
+      normal = gap_normal(model, e)
+      row%place = model%elements%place(e)
+      if (.not. norm2(normal) > 0.0_wp) then
+         call fail_at(error, model%source, row%place, 'the nodes of gap element ' &
+               //to_text(model%elements%id(e))//' coincide and *GAP gives no normal', &
+               'give the normal on the data line of *GAP: clearance, nx, ny, nz')
+         return
+      end if
+      row%node = model%elements%nodes(first + 1)
+      row%interaction = model%sections(model%elements%section(e))%interaction
+      row%normal = normal
+      row%offset = model%sections(model%elements%section(e))%clearance
+      call add_terms(row, model%elements%nodes(first), -normal)
+      call add_terms(row, model%elements%nodes(first + 1), normal)
+   end subroutine make_gap_row
+
+   pure subroutine add_terms(row, node, direction)
+      type(contact_row_type), intent(inout) :: row
+      integer, intent(in) :: node
+      real(wp), intent(in) :: direction(3)
+      integer :: i
+
+      do i = 1, 3
+         if (.not. abs(direction(i)) > 0.0_wp) cycle
+         row%n_terms = row%n_terms + 1
+         row%term_node(row%n_terms) = node
+         row%term_dof(row%n_terms) = i
+         row%coefficient(row%n_terms) = direction(i)
+      end do
+   end subroutine add_terms
+
+end module contact_pairs

@@ -1,0 +1,187 @@
+!> One Newmark step of smooth motion with contact rows held or complementary, and the step of a
+!> static problem.
+module constrained_step
+   use kinds, only: wp
+   use errors, only: error_type, new_error, status_numerical
+   use text, only: to_text
+   use dof_map, only: reduce
+   use complementarity, only: solve_complementarity, solve_equality
+   use motion_state, only: newmark_type, correct
+   use equation_of_motion, only: predict_motion, fixed_force, residual, &
+         solve_motion, prepare_motion
+   use constraint_rows, only: row_gaps, row_accelerations, row_forces
+   use impact_scene, only: scene_type, contact_motion_type
+   use row_compliance, only: find_compliance
+   use overlap_force, only: add_overlap_force
+   implicit none
+   private
+
+   public :: advance_smoothly, solve_statically
+
+contains
+
+   !> M a + C v + S(d) = f + Gt lambda over a step dt, for the touching rows
+   !> 0 <= lambda, W lambda + G a_free >= 0 (or, given `held`, W lambda + G a_free = 0 on its rows), with
+   !> W = G A^-1 Gt, A = M + gamma h C + beta h^2 K; overlapping rows get their fictitious force where
+   !> the scene has that method. Solved for accelerations: nothing is divided by beta h^2. Errors:
+   !> singular matrix, no convergence of nonlinear elements.
+   subroutine advance_smoothly(scene, from, dt, beta, to, error, held)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(in) :: from
+      real(wp), intent(in) :: dt
+      real(wp), intent(in) :: beta
+      type(contact_motion_type), intent(out) :: to
+      type(error_type), allocatable, intent(out) :: error
+      logical, intent(in), optional :: held(:)   !! (n_rows) rows held bilaterally, the others free
+      type(newmark_type) :: newmark
+      real(wp), dimension(size(from%motion%d)) :: fixed, psi, delta
+      real(wp) :: reference
+      integer :: iteration
+
+      newmark = scene%system%newmark
+      newmark%beta = beta
+      to = from
+      call predict_motion(scene%system, from%motion, dt, beta, to%motion)
+      fixed = fixed_force(scene%system, from%motion, to%motion)
+      reference = 0.0_wp
+      do iteration = 1, scene%system%max_iterations
+         psi = residual(scene%system, fixed, to%motion)
+         call prepare_motion(scene%system, dt, beta, to%motion%d, error)
+         if (allocated(error)) return
+         delta = solve_motion(scene%system, psi)
+         call add_contact(scene, to, delta, error, held)
+         if (allocated(error)) return
+         if (scene%settings%fictitious) call add_overlap_force(scene, beta*dt**2, to, delta, error)
+         if (allocated(error)) return
+         call correct(newmark, dt, delta, to%motion)
+         if (scene%system%structure%is_linear) return
+         scene%n_iterations = scene%n_iterations + 1
+         reference = max(reference, norm2(psi), norm2(fixed))
+         if (has_converged(scene, fixed, to, delta, reference)) return
+      end do
+      call not_converged(scene, to%motion%t, error)
+   end subroutine advance_smoothly
+
+   !> Adds the contact forces of the touching rows to the change of the acceleration.
+   subroutine add_contact(scene, to, delta, error, held)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(inout) :: to
+      real(wp), intent(inout) :: delta(:)
+      type(error_type), allocatable, intent(out) :: error
+      logical, intent(in), optional :: held(:)
+      integer, allocatable :: active(:)
+      real(wp), allocatable :: w(:, :), x(:, :), q(:), lambda(:)
+      logical :: solved
+      integer :: i
+
+      to%lambda = 0.0_wp
+      if (.not. any(to%touching)) return
+      active = pack([(i, i=1, scene%rows%n)], to%touching)
+      if (present(held)) active = pack([(i, i=1, scene%rows%n)], held)
+      call find_compliance(scene, active, w, x)
+      q = row_accelerations(scene%rows, to%motion%a + delta)
+      q = q(active)
+      allocate (lambda(size(active)))
+      if (present(held)) then
+         call solve_equality(w, q, lambda, solved)
+      else
+         call solve_complementarity(w, q, lambda, solved)
+      end if
+      if (.not. solved) then
+         call dependent_rows(scene, to%motion%t, error)
+         return
+      end if
+      to%lambda(active) = lambda
+      delta = delta + matmul(x, lambda)
+   end subroutine add_contact
+
+   !> Newton's method has converged when both the correction and the residual are small.
+   function has_converged(scene, fixed, to, delta, reference) result(converged)
+      type(scene_type), intent(in) :: scene
+      real(wp), intent(in) :: fixed(:), delta(:), reference
+      type(contact_motion_type), intent(in) :: to
+      logical :: converged
+      real(wp) :: psi(size(fixed)), motion
+
+      motion = norm2(to%motion%a)
+      if (scene%system%static) motion = norm2(to%motion%d)
+      psi = residual(scene%system, fixed, to%motion) + row_forces(scene%rows, to%lambda, size(psi))
+      converged = norm2(delta) <= scene%system%tolerance*motion .and. &
+            norm2(reduce(scene%system%structure%map, psi)) <= scene%system%tolerance*reference
+      converged = converged .or. .not. (motion > 0.0_wp .or. reference > 0.0_wp)
+   end function has_converged
+
+   subroutine not_converged(scene, t, error)
+      type(scene_type), intent(in) :: scene
+      real(wp), intent(in) :: t
+      type(error_type), allocatable, intent(out) :: error
+
+      call new_error(error, status_numerical, 'no convergence in ' &
+            //to_text(scene%system%max_iterations)//' iterations at time '//to_text(t) &
+            //new_line('a')//'  cure: a smaller increment, or tables without sharp drops of stiffness')
+   end subroutine not_converged
+
+   subroutine dependent_rows(scene, t, error)
+      type(scene_type), intent(in) :: scene
+      real(wp), intent(in) :: t
+      type(error_type), allocatable, intent(out) :: error
+
+      call new_error(error, status_numerical, 'contact conditions depend on each other at time ' &
+            //to_text(t)//' ('//to_text(scene%rows%n)//' rows in all)'//new_line('a') &
+            //'  cure: let no node touch the same wall twice, and none that is fixed along the normal')
+   end subroutine dependent_rows
+
+   !> S(d) = f + Gt lambda with 0 <= lambda, g >= 0 on all rows; the motion solution is a
+   !> displacement here. Velocities and accelerations are zero.
+   subroutine solve_statically(scene, from, dt, to, error)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(in) :: from
+      real(wp), intent(in) :: dt
+      type(contact_motion_type), intent(out) :: to
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), dimension(size(from%motion%d)) :: fixed, psi, delta
+      real(wp) :: reference
+      integer :: iteration
+
+      to = from
+      call predict_motion(scene%system, from%motion, dt, 0.25_wp, to%motion)
+      to%motion%v = 0.0_wp
+      to%motion%a = 0.0_wp
+      fixed = fixed_force(scene%system, from%motion, to%motion)
+      reference = 0.0_wp
+      do iteration = 1, scene%system%max_iterations
+         psi = residual(scene%system, fixed, to%motion)
+         call prepare_motion(scene%system, dt, 0.25_wp, to%motion%d, error)
+         if (allocated(error)) return
+         delta = solve_motion(scene%system, psi)
+         call add_static_contact(scene, to, delta, error)
+         if (allocated(error)) return
+         to%motion%d = to%motion%d + delta
+         if (scene%system%structure%is_linear) return
+         scene%n_iterations = scene%n_iterations + 1
+         reference = max(reference, norm2(psi), norm2(fixed))
+         if (has_converged(scene, fixed, to, delta, reference)) return
+      end do
+      call not_converged(scene, to%motion%t, error)
+   end subroutine solve_statically
+
+   subroutine add_static_contact(scene, to, delta, error)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(inout) :: to
+      real(wp), intent(inout) :: delta(:)
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), allocatable :: w(:, :), x(:, :), q(:)
+      logical :: solved
+      integer :: i
+
+      if (scene%rows%n == 0) return
+      call find_compliance(scene, [(i, i=1, scene%rows%n)], w, x)
+      q = row_gaps(scene%rows, to%motion) + row_accelerations(scene%rows, delta)
+      call solve_complementarity(w, q, to%lambda, solved)
+      if (.not. solved) call dependent_rows(scene, to%motion%t, error)
+      if (allocated(error)) return
+      delta = delta + matmul(x, to%lambda)
+      to%touching = to%lambda > 0.0_wp
+   end subroutine add_static_contact
+
+end module constrained_step

@@ -1,0 +1,68 @@
+!> Makes the impact method that a deck asks for, and its settings.
+module impact_factory
+   use kinds, only: wp
+   use errors, only: error_type
+   use places, only: fail_at
+   use model, only: model_type
+   use surfaces, only: interaction_type, method_fictitious_force
+   use contact_pairs, only: contact_pair_list_type
+   use impact_scene, only: impact_settings_type
+   use impact_method, only: impact_method_type
+   use no_impact, only: no_impact_type
+   use transformation, only: transformation_type
+   use fictitious_force, only: fictitious_force_type
+   implicit none
+   private
+
+   public :: make_impact_method
+
+contains
+
+   !> The method of the interactions in use; none without contact rows. One run has one method, one
+   !> beta of the impact step, one limit of events and one return parameter.
+   subroutine make_impact_method(model, list, method, settings, error)
+      type(model_type), intent(in) :: model
+      type(contact_pair_list_type), intent(in) :: list
+      class(impact_method_type), allocatable, intent(out) :: method
+      type(impact_settings_type), intent(out) :: settings
+      type(error_type), allocatable, intent(out) :: error
+      type(interaction_type) :: first
+      integer :: i
+
+      if (size(list%rows) == 0) then
+         allocate (no_impact_type :: method)
+         return
+      end if
+      first = model%interactions(list%rows(1)%interaction)
+      do i = 2, size(list%rows)
+         if (agree(first, model%interactions(list%rows(i)%interaction))) cycle
+         call fail_at(error, model%source, model%interactions(list%rows(i)%interaction)%place, &
+               'the interactions of one run differ in METHOD, BETA, MAX EVENTS, RETURN or SOLUTION', &
+               'give them the same; RESTITUTION and CAPTURE may differ')
+         return
+      end do
+      settings%beta_choice = first%beta_choice
+      settings%beta = first%beta
+      settings%max_events = first%max_events
+      settings%return_parameter = first%return_parameter
+      settings%direct = first%direct
+      settings%fictitious = first%method == method_fictitious_force
+      select case (first%method)
+      case (method_fictitious_force)
+         allocate (fictitious_force_type :: method)
+      case default
+         allocate (transformation_type :: method)
+      end select
+   end subroutine make_impact_method
+
+   pure function agree(one, other) result(same)
+      type(interaction_type), intent(in) :: one, other
+      logical :: same
+
+      same = one%method == other%method .and. one%beta_choice == other%beta_choice .and. &
+            one%max_events == other%max_events .and. (one%direct .eqv. other%direct) .and. &
+            .not. abs(one%beta - other%beta) > 0.0_wp .and. &
+            .not. abs(one%return_parameter - other%return_parameter) > 0.0_wp
+   end function agree
+
+end module impact_factory

@@ -1,0 +1,134 @@
+!> What an impact method works on: the system in motion, the contact rows, the energy account and
+!> the record of events.
+module impact_scene
+   use kinds, only: wp, int64
+   use surfaces, only: beta_automatic
+   use motion_state, only: state_type
+   use equation_of_motion, only: system_type
+   use energy_ledger, only: ledger_type, record_span
+   use constraint_rows, only: rows_type, row_forces, row_accelerations
+   implicit none
+   private
+
+   public :: scene_type, contact_motion_type, event_type, impact_settings_type
+   public :: event_impact, event_capture, event_release, event_contact, event_limit
+   public :: new_contact_motion, record_event, accept_span, capture_speeds
+
+   integer, parameter :: event_impact = 1     !! velocity jump
+   integer, parameter :: event_capture = 2    !! a row begins sustained contact
+   integer, parameter :: event_release = 3    !! a row ends sustained contact
+   integer, parameter :: event_contact = 4    !! first overlap, fictitious force
+   integer, parameter :: event_limit = 5      !! the limit of events in a step was reached
+
+   !> Relative tolerances, each on the size of the numbers its quantity is a difference of.
+   real(wp), parameter, public :: gap_tolerance = 1.0e-12_wp
+   real(wp), parameter, public :: merge_gap_tolerance = 1.0e-9_wp
+   real(wp), parameter, public :: rate_tolerance = 1.0e-12_wp
+   real(wp), parameter, public :: acceleration_tolerance = 1.0e-12_wp
+   !> Impacts and releases this close, in parts of the step, happen together.
+   real(wp), parameter, public :: merge_time_tolerance = 1.0e-6_wp
+
+   !> Motion with its contact forces.
+   type :: contact_motion_type
+      type(state_type) :: motion
+      real(wp), allocatable :: lambda(:)         !! (n_rows) contact forces, positive in compression
+      logical, allocatable :: touching(:)        !! (n_rows) in sustained contact
+      real(wp), allocatable :: entry_speed(:)    !! (n_rows) fictitious force: approach speed
+      logical, allocatable :: leaving(:)         !! (n_rows) fictitious force: on its way out
+      logical :: fresh = .false.                 !! acceleration just restarted, no time since
+   end type contact_motion_type
+
+   !> One thing that happened in one row.
+   type :: event_type
+      real(wp) :: time = 0.0_wp
+      integer :: kind = 0                        !! one of the event_ parameters
+      integer :: row = 0
+      real(wp) :: rate_before = 0.0_wp           !! gap rate
+      real(wp) :: rate_after = 0.0_wp
+      real(wp) :: impulse = 0.0_wp
+      real(wp) :: beta = 0.0_wp                  !! of the impact step
+   end type event_type
+
+   !> What the deck says of the method.
+   type :: impact_settings_type
+      integer :: beta_choice = beta_automatic
+      real(wp) :: beta = 0.0_wp
+      integer :: max_events = 100
+      logical :: fictitious = .false.            !! overlapping rows get a fictitious force
+      real(wp) :: return_parameter = 0.3_wp      !! alpha
+      logical :: direct = .false.
+      logical :: locate_release = .true.
+   end type impact_settings_type
+
+   !> Everything an impact method needs besides the motion.
+   type :: scene_type
+      type(system_type) :: system
+      type(rows_type) :: rows
+      type(impact_settings_type) :: settings
+      type(ledger_type) :: ledger
+      type(event_type), allocatable :: events(:) !! grown by doubling
+      integer :: n_events = 0                    !! since the last time they were fetched
+      real(wp), allocatable :: impulse(:)        !! (n_rows) of the increment at hand
+      integer(int64) :: n_iterations = 0         !! of Newton's method and of the fictitious force
+   end type scene_type
+
+contains
+
+   !> A motion at rest at the origin, nothing in contact.
+   pure subroutine new_contact_motion(self, n_freedoms, n_rows)
+      type(contact_motion_type), intent(out) :: self
+      integer, intent(in) :: n_freedoms, n_rows
+      integer :: i
+
+      self%motion%d = [(0.0_wp, i=1, n_freedoms)]
+      self%motion%v = self%motion%d
+      self%motion%a = self%motion%d
+      self%lambda = [(0.0_wp, i=1, n_rows)]
+      self%entry_speed = self%lambda
+      self%touching = [(.false., i=1, n_rows)]
+      self%leaving = self%touching
+   end subroutine new_contact_motion
+
+   !> Notes an event.
+   pure subroutine record_event(scene, event)
+      type(scene_type), intent(inout) :: scene
+      type(event_type), intent(in) :: event
+      type(event_type), allocatable :: longer(:)
+
+      if (.not. allocated(scene%events)) allocate (scene%events(16))
+      if (scene%n_events == size(scene%events)) then
+         allocate (longer(2*size(scene%events)))
+         longer(:scene%n_events) = scene%events
+         call move_alloc(longer, scene%events)
+      end if
+      scene%n_events = scene%n_events + 1
+      scene%events(scene%n_events) = event
+   end subroutine record_event
+
+   !> Takes a span of smooth motion as it is: its works and contact impulses are booked.
+   subroutine accept_span(scene, from, to)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(in) :: from, to
+      integer :: n
+
+      n = size(from%motion%d)
+      call record_span(scene%ledger, scene%system, from%motion, to%motion, &
+            row_forces(scene%rows, from%lambda, n), row_forces(scene%rows, to%lambda, n))
+      scene%impulse = scene%impulse &
+            + (to%motion%t - from%motion%t)*(from%lambda + to%lambda)/2.0_wp
+   end subroutine accept_span
+
+   !> Speed below which a rebound is captured, by rows: the deck's, or such that all the bounces that
+   !> would follow, 2 u / (closing (1 - e)) long together, fit into one step.
+   pure function capture_speeds(scene, a, dt) result(limits)
+      type(scene_type), intent(in) :: scene
+      real(wp), intent(in) :: a(:)               !! (n_freedoms) acceleration after the impact
+      real(wp), intent(in) :: dt                 !! the whole step
+      real(wp) :: limits(scene%rows%n)
+
+      limits = dt/2.0_wp*max(0.0_wp, -row_accelerations(scene%rows, a)) &
+            *max(1.0e-3_wp, 1.0_wp - scene%rows%restitution)
+      where (scene%rows%capture >= 0.0_wp) limits = scene%rows%capture
+   end function capture_speeds
+
+end module impact_scene

@@ -1,0 +1,42 @@
+!> Threads of the linear algebra library, where it has any.
+module threads
+   use, intrinsic :: iso_c_binding, only: c_int, c_ptr, c_null_ptr, c_funptr, c_char, c_null_char, &
+         c_associated, c_f_procpointer
+   implicit none
+   private
+
+   public :: set_threads
+
+   abstract interface
+      subroutine setter_interface(n) bind(c)
+         import :: c_int
+         integer(c_int), value :: n
+      end subroutine setter_interface
+   end interface
+
+   interface
+      function find_symbol(handle, name) bind(c, name='dlsym') result(address)
+         import :: c_ptr, c_funptr, c_char
+         type(c_ptr), value :: handle
+         character(kind=c_char), intent(in) :: name(*)
+         type(c_funptr) :: address
+      end function find_symbol
+   end interface
+
+contains
+
+   !> Asks OpenBLAS for n threads (0: leaves it alone). A library without the call has no threads to
+   !> set: it is looked up at run time, so that any BLAS can be linked.
+   subroutine set_threads(n)
+      integer, intent(in) :: n
+      procedure(setter_interface), pointer :: setter
+      type(c_funptr) :: address
+
+      if (n < 1) return
+      address = find_symbol(c_null_ptr, 'openblas_set_num_threads'//c_null_char)
+      if (.not. c_associated(address)) return
+      call c_f_procpointer(address, setter)
+      call setter(int(n, c_int))
+   end subroutine set_threads
+
+end module threads

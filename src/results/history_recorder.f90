@@ -1,0 +1,219 @@
+!> Writes /history: one column a printed component, one row an increment.
+module history_recorder
+   use kinds, only: wp
+   use errors, only: error_type
+   use text, only: to_text
+   use model, only: model_type
+   use steps, only: quantity_u, quantity_v, quantity_a, quantity_rf, quantity_s, quantity_e, &
+         quantity_ener, quantity_cf, quantity_cdis, n_quantities
+   use contact_pairs, only: contact_pair_list_type
+   use impact_scene, only: scene_type
+   use hdf5_file, only: hdf5_file_type
+   use column_table, only: column_table_type
+   use output_plan, only: plan_type
+   use snapshot, only: snapshot_type, element_values
+   implicit none
+   private
+
+   public :: history_type, new_history, record_history
+
+   !> Where the value of a column comes from.
+   type :: column_type
+      integer :: quantity = 0                    !! quantity_ parameter; impulse_column
+      integer :: item = 0                        !! freedom, element of a group, or pair
+      integer :: group = 0
+      integer :: component = 0
+   end type column_type
+
+   integer, parameter :: impulse_column = n_quantities + 1
+
+   !> The columns and their table.
+   type :: history_type
+      type(column_table_type) :: table
+      type(column_type), allocatable :: columns(:)
+      integer :: n = 0
+      logical :: needs_reactions = .false.
+   end type history_type
+
+   character(len=2), parameter :: names(4) = ['U ', 'V ', 'A ', 'RF']
+   character(len=12), parameter :: meanings(4) = &
+         ['displacement', 'velocity    ', 'acceleration', 'reaction    ']
+
+contains
+
+   !> Makes the group and its columns: those of existing freedoms, of elements with stress, of pairs.
+   subroutine new_history(self, file, model, scene, list, plan, error)
+      type(history_type), intent(out) :: self
+      type(hdf5_file_type), intent(in) :: file
+      type(model_type), intent(in) :: model
+      type(scene_type), intent(in) :: scene
+      type(contact_pair_list_type), intent(in) :: list
+      type(plan_type), intent(in) :: plan
+      type(error_type), allocatable, intent(out) :: error
+
+      allocate (self%columns(64))
+      call self%table%create(file, '/history', 'what the deck asks to print, a row an increment', error)
+      if (allocated(error)) return
+      call self%table%add_column(file, 'time', 'total time', error)
+      if (allocated(error)) return
+      call add_nodes(self, file, model, scene, plan, error)
+      if (allocated(error)) return
+      call add_elements(self, file, model, scene, plan, error)
+      if (allocated(error)) return
+      call add_pairs(self, file, list, plan, error)
+   end subroutine new_history
+
+   subroutine add_nodes(self, file, model, scene, plan, error)
+      type(history_type), intent(inout) :: self
+      type(hdf5_file_type), intent(in) :: file
+      type(model_type), intent(in) :: model
+      type(scene_type), intent(in) :: scene
+      type(plan_type), intent(in) :: plan
+      type(error_type), allocatable, intent(out) :: error
+      integer :: node, q, i, f
+      character(len=:), allocatable :: id
+
+      do node = 1, model%nodes%n
+         do q = quantity_u, quantity_rf
+            if (.not. plan%node_print(q, node)) cycle
+            self%needs_reactions = self%needs_reactions .or. q == quantity_rf
+            id = to_text(model%nodes%id(node))
+            do i = 1, 3
+               f = scene%system%structure%map%freedom(i, node)
+               if (f == 0) cycle
+               call add(self, file, column_type(q, f, 0, i), 'node_'//id//'/'//trim(names(q)) &
+                     //to_text(i), trim(meanings(q))//' of node '//id//' in direction '//to_text(i), error)
+               if (allocated(error)) return
+            end do
+         end do
+      end do
+   end subroutine add_nodes
+
+   subroutine add_elements(self, file, model, scene, plan, error)
+      type(history_type), intent(inout) :: self
+      type(hdf5_file_type), intent(in) :: file
+      type(model_type), intent(in) :: model
+      type(scene_type), intent(in) :: scene
+      type(plan_type), intent(in) :: plan
+      type(error_type), allocatable, intent(out) :: error
+      integer :: g, e, q, member
+      character(len=:), allocatable :: id
+      character(len=4), parameter :: names(3) = ['S11 ', 'E11 ', 'ENER']
+      character(len=21), parameter :: meanings(3) = &
+            ['axial stress         ', 'axial strain         ', 'strain energy density']
+
+      do g = 1, size(scene%system%structure%groups)
+         associate (group => scene%system%structure%groups(g))
+            if (.not. group%element%has_stress) cycle
+            do e = 1, size(group%member)
+               member = group%member(e)
+               id = to_text(model%elements%id(member))
+               do q = quantity_s, quantity_ener
+                  if (.not. plan%element_print(q, member)) cycle
+                  call add(self, file, column_type(q, e, g, q - quantity_s + 1), 'element_'//id//'/' &
+                        //trim(names(q - quantity_s + 1)), trim(meanings(q - quantity_s + 1)) &
+                        //' of element '//id, error)
+                  if (allocated(error)) return
+               end do
+            end do
+         end associate
+      end do
+   end subroutine add_elements
+
+   subroutine add_pairs(self, file, list, plan, error)
+      type(history_type), intent(inout) :: self
+      type(hdf5_file_type), intent(in) :: file
+      type(contact_pair_list_type), intent(in) :: list
+      type(plan_type), intent(in) :: plan
+      type(error_type), allocatable, intent(out) :: error
+      integer :: p, i
+      character(len=:), allocatable :: group
+
+      do p = 1, size(list%names)
+         group = 'contact_'//trim(list%names(p))//'/'
+         if (plan%contact_print(quantity_cf)) then
+            do i = 1, 3
+               call add(self, file, column_type(quantity_cf, p, 0, i), group//'CF'//to_text(i), &
+                     'total contact force on the slave in direction '//to_text(i), error)
+               if (allocated(error)) return
+            end do
+            call add(self, file, column_type(impulse_column, p, 0, 0), group//'impulse', &
+                  'normal contact impulse of the increment, impacts included', error)
+            if (allocated(error)) return
+         end if
+         if (.not. plan%contact_print(quantity_cdis)) cycle
+         call add(self, file, column_type(quantity_cdis, p, 0, 0), group//'CDIS', &
+               'smallest gap of the pair, negative in overlap', error)
+         if (allocated(error)) return
+      end do
+   end subroutine add_pairs
+
+   subroutine add(self, file, column, path, description, error)
+      type(history_type), intent(inout) :: self
+      type(hdf5_file_type), intent(in) :: file
+      type(column_type), intent(in) :: column
+      character(len=*), intent(in) :: path, description
+      type(error_type), allocatable, intent(out) :: error
+      type(column_type), allocatable :: longer(:)
+
+      call self%table%add_column(file, path, description, error)
+      if (allocated(error)) return
+      if (self%n == size(self%columns)) then
+         allocate (longer(2*self%n))
+         longer(:self%n) = self%columns
+         call move_alloc(longer, self%columns)
+      end if
+      self%n = self%n + 1
+      self%columns(self%n) = column
+   end subroutine add
+
+   !> Appends a row.
+   subroutine record_history(self, file, scene, list, snapshot, error)
+      type(history_type), intent(inout) :: self
+      type(hdf5_file_type), intent(in) :: file
+      type(scene_type), intent(in) :: scene
+      type(contact_pair_list_type), intent(in) :: list
+      type(snapshot_type), intent(in) :: snapshot
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: row(self%n + 1)
+      integer :: i
+
+      row(1) = snapshot%time
+      do i = 1, self%n
+         row(i + 1) = value_of(self%columns(i), scene, list, snapshot)
+      end do
+      call self%table%append_row(file, row, error)
+   end subroutine record_history
+
+   pure function value_of(column, scene, list, snapshot) result(value)
+      type(column_type), intent(in) :: column
+      type(scene_type), intent(in) :: scene
+      type(contact_pair_list_type), intent(in) :: list
+      type(snapshot_type), intent(in) :: snapshot
+      real(wp) :: value
+      real(wp) :: three(3)
+
+      value = 0.0_wp
+      select case (column%quantity)
+      case (quantity_u)
+         value = snapshot%u(column%item)
+      case (quantity_v)
+         value = snapshot%v(column%item)
+      case (quantity_a)
+         value = snapshot%a(column%item)
+      case (quantity_rf)
+         value = snapshot%rf(column%item)
+      case (quantity_s, quantity_e, quantity_ener)
+         three = element_values(scene, column%group, column%item, snapshot%u)
+         value = three(column%component)
+      case (quantity_cf)
+         value = sum(snapshot%lambda*scene%rows%normal(column%component, :), &
+               mask=list%rows%pair == column%item)
+      case (impulse_column)
+         value = sum(snapshot%impulse, mask=list%rows%pair == column%item)
+      case (quantity_cdis)
+         value = minval(snapshot%gap, mask=list%rows%pair == column%item)
+      end select
+   end function value_of
+
+end module history_recorder

@@ -1,0 +1,90 @@
+!> Which results a deck asks for, over all its steps together.
+module output_plan
+   use model, only: model_type
+   use steps, only: request_type, n_quantities, request_node_print, request_node_file, &
+         request_element_print, request_element_file, request_contact_print, request_contact_file, &
+         request_energy_print
+   implicit none
+   private
+
+   public :: plan_type, new_plan, is_due
+
+   !> What is recorded of each node, element and pair.
+   type :: plan_type
+      logical, allocatable :: node_print(:, :)      !! (n_quantities, n_nodes)
+      logical, allocatable :: element_print(:, :)   !! (n_quantities, n_elements)
+      logical :: contact_print(n_quantities) = .false.
+      logical :: file(n_quantities) = .false.       !! fields of the grid
+      logical :: energy = .false.
+   end type plan_type
+
+contains
+
+   !> Gathers the requests of all steps.
+   subroutine new_plan(self, model)
+      type(plan_type), intent(out) :: self
+      type(model_type), intent(in) :: model
+      integer :: s, r
+
+      allocate (self%node_print(n_quantities, model%nodes%n))
+      allocate (self%element_print(n_quantities, model%elements%n))
+      self%node_print = .false.
+      self%element_print = .false.
+      do s = 1, size(model%steps)
+         do r = 1, size(model%steps(s)%requests)
+            call add_request(self, model, model%steps(s)%requests(r))
+         end do
+      end do
+   end subroutine new_plan
+
+   subroutine add_request(self, model, request)
+      type(plan_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(request_type), intent(in) :: request
+      integer :: i
+
+      select case (request%kind)
+      case (request_node_print)
+         do i = 1, n_quantities
+            if (.not. request%wanted(i)) cycle
+            if (request%set == 0) then
+               self%node_print(i, :) = .true.
+            else
+               self%node_print(i, model%node_sets(request%set)%members) = .true.
+            end if
+         end do
+      case (request_element_print)
+         do i = 1, n_quantities
+            if (.not. request%wanted(i)) cycle
+            if (request%set == 0) then
+               self%element_print(i, :) = .true.
+            else
+               self%element_print(i, model%element_sets(request%set)%members) = .true.
+            end if
+         end do
+      case (request_contact_print)
+         self%contact_print = self%contact_print .or. request%wanted
+      case (request_energy_print)
+         self%energy = .true.
+      case (request_node_file, request_element_file, request_contact_file)
+         self%file = self%file .or. request%wanted
+      end select
+   end subroutine add_request
+
+   !> Whether some request of the given kinds asks for this increment of its step.
+   pure function is_due(requests, kinds, increment, last) result(due)
+      type(request_type), intent(in) :: requests(:)
+      integer, intent(in) :: kinds(:)            !! request_ parameters
+      integer, intent(in) :: increment
+      logical, intent(in) :: last                !! the last increment of a step is always recorded
+      logical :: due
+      integer :: i
+
+      due = .false.
+      do i = 1, size(requests)
+         if (.not. any(kinds == requests(i)%kind)) cycle
+         due = due .or. last .or. modulo(increment, requests(i)%frequency) == 0
+      end do
+   end function is_due
+
+end module output_plan

@@ -1,0 +1,301 @@
+!> The result file of a run: grid, histories, energies, events, and the model beside them.
+module result_file
+   use kinds, only: wp
+   use errors, only: error_type
+   use model, only: model_type
+   use places, only: source_type
+   use steps, only: request_type, request_node_print, request_element_print, &
+         request_contact_print, request_energy_print, request_node_file, request_element_file, &
+         request_contact_file
+   use contact_pairs, only: contact_pair_list_type
+   use impact_scene, only: scene_type, contact_motion_type, event_type, event_impact, &
+         event_capture, event_release, event_contact
+   use hdf5_file, only: hdf5_file_type
+   use column_table, only: column_table_type
+   use output_plan, only: plan_type, new_plan, is_due
+   use snapshot, only: snapshot_type, take_snapshot
+   use history_recorder, only: history_type, new_history, record_history
+   use grid_recorder, only: grid_type, new_grid, record_frame
+   implicit none
+   private
+
+   public :: result_file_type, open_results, record_increment, close_results, event_name
+   public :: write_system, flush_results
+
+   !> Everything open.
+   type :: result_file_type
+      type(hdf5_file_type) :: file
+      type(plan_type) :: plan
+      type(grid_type) :: grid
+      type(history_type) :: history
+      type(column_table_type) :: energy
+      type(column_table_type) :: events
+   end type result_file_type
+
+   integer, parameter :: text_length = 80
+
+   character(len=13), parameter :: energy_columns(10) = ['time         ', 'kinetic      ', &
+         'strain       ', 'damping      ', 'plastic      ', 'friction     ', 'impact_loss  ', &
+         'external_work', 'total        ', 'balance_error']
+   character(len=64), parameter :: energy_meanings(10) = [ &
+         'total time                                                      ', &
+         'kinetic energy                                                  ', &
+         'strain energy                                                   ', &
+         'energy taken by damping                                         ', &
+         'energy taken by plastic deformation                             ', &
+         'energy taken by friction                                        ', &
+         'energy taken by impacts and contact forces                      ', &
+         'work of loads, prescribed motion and moving walls               ', &
+         'kinetic and strain energy                                       ', &
+         'total + losses - external work - initial total                  ']
+
+contains
+
+   !> Creates the file with all its groups. The model is known to be sound by now.
+   subroutine open_results(self, path, model, scene, list, error)
+      type(result_file_type), intent(out) :: self
+      character(len=*), intent(in) :: path
+      type(model_type), intent(in) :: model
+      type(scene_type), intent(in) :: scene
+      type(contact_pair_list_type), intent(in) :: list
+      type(error_type), allocatable, intent(out) :: error
+
+      call new_plan(self%plan, model)
+      call self%file%create(path, error)
+      if (allocated(error)) return
+      call new_grid(self%grid, self%file, model, self%plan, error)
+      if (allocated(error)) return
+      call new_history(self%history, self%file, model, scene, list, self%plan, error)
+      if (allocated(error)) return
+      call new_energy(self, error)
+      if (allocated(error)) return
+      call new_events(self, error)
+      if (allocated(error)) return
+      call write_model(self, model, error)
+   end subroutine open_results
+
+   subroutine new_energy(self, error)
+      type(result_file_type), intent(inout) :: self
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      if (.not. self%plan%energy) return
+      call self%energy%create(self%file, '/energy', 'energies and works since the start', error)
+      if (allocated(error)) return
+      do i = 1, size(energy_columns)
+         call self%energy%add_column(self%file, trim(energy_columns(i)), trim(energy_meanings(i)), error)
+         if (allocated(error)) return
+      end do
+   end subroutine new_energy
+
+   subroutine new_events(self, error)
+      type(result_file_type), intent(inout) :: self
+      type(error_type), allocatable, intent(out) :: error
+      character(len=15), parameter :: names(5) = ['time           ', 'gap_rate_before', &
+            'gap_rate_after ', 'impulse        ', 'beta           ']
+      character(len=50), parameter :: meanings(5) = [ &
+            'total time                                        ', &
+            'gap rate before the event, negative when closing  ', &
+            'gap rate after the event                          ', &
+            'impulse along the normal                          ', &
+            'Newmark beta of the step with the event           ']
+      integer :: i
+
+      call self%events%create(self%file, '/events', 'impacts, captures and releases', error)
+      do i = 1, size(names)
+         if (allocated(error)) return
+         call self%events%add_column(self%file, trim(names(i)), trim(meanings(i)), error)
+      end do
+      if (allocated(error)) return
+      call self%events%add_integer_column(self%file, 'node', 'id of the slave node', error)
+      if (allocated(error)) return
+      call self%events%add_text_column(self%file, 'kind', text_length, &
+            'impact, capture, release, contact (first overlap) or limit (of events)', error)
+      if (allocated(error)) return
+      call self%events%add_text_column(self%file, 'pair', text_length, 'name of the contact pair', error)
+   end subroutine new_events
+
+   !> The deck's text and the rigid planes.
+   subroutine write_model(self, model, error)
+      type(result_file_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), allocatable :: planes(:, :)
+      integer :: i
+
+      call self%file%create_group('/model', 'what was computed and by what', error)
+      if (allocated(error)) return
+      call self%file%write_dataset('/model/deck', deck_text(model%source), &
+            'the deck, included files behind it', error)
+      if (allocated(error) .or. size(model%rigid_surfaces) == 0) return
+      allocate (planes(6, size(model%rigid_surfaces)))
+      do i = 1, size(planes, 2)
+         planes(:, i) = [model%rigid_surfaces(i)%point, model%rigid_surfaces(i)%normal]
+      end do
+      call self%file%write_dataset('/model/rigid_planes', planes, &
+            'a point and the outward normal of each rigid plane at the start', error)
+   end subroutine write_model
+
+   pure function deck_text(source) result(text)
+      type(source_type), intent(in) :: source
+      character(len=:), allocatable :: text
+      integer :: f, i, n
+
+      n = 0
+      do f = 1, source%n_files
+         do i = 1, source%files(f)%n_lines
+            n = n + len(source%files(f)%lines(i)%text) + 1
+         end do
+      end do
+      allocate (character(len=n) :: text)
+      n = 0
+      do f = 1, source%n_files
+         do i = 1, source%files(f)%n_lines
+            associate (line => source%files(f)%lines(i)%text)
+               text(n + 1:n + len(line)) = line
+               n = n + len(line) + 1
+               text(n:n) = new_line('a')
+            end associate
+         end do
+      end do
+   end function deck_text
+
+   !> The equations of the first step: column heights of K*, columns of implicit elements; settings.
+   subroutine write_system(self, scene, version, implicit_equation, error)
+      type(result_file_type), intent(inout) :: self
+      type(scene_type), intent(in) :: scene
+      character(len=*), intent(in) :: version
+      logical, intent(in) :: implicit_equation(:)
+      type(error_type), allocatable, intent(out) :: error
+      integer :: heights(size(implicit_equation)), i
+
+      heights = [(i - scene%system%profile%first_row(i) + 1, i=1, size(heights))]
+      call self%file%set_attribute('/model', 'version', version, error)
+      if (allocated(error)) return
+      call self%file%set_attribute('/model', 'n_eq', size(heights), error)
+      if (allocated(error)) return
+      call self%file%set_attribute('/model', 'gamma', scene%system%newmark%gamma, error)
+      if (allocated(error)) return
+      call self%file%set_attribute('/model', 'beta', scene%system%newmark%beta, error)
+      if (allocated(error)) return
+      call self%file%set_attribute('/model', 'alpha', scene%system%newmark%alpha, error)
+      if (allocated(error)) return
+      call self%file%write_dataset('/model/profile', heights, &
+            'column heights of the effective stiffness, diagonal included', error)
+      if (allocated(error)) return
+      call self%file%write_dataset('/model/implicit', merge(1, 0, implicit_equation), &
+            '1 for equations that an implicit element touches', error)
+   end subroutine write_system
+
+   !> Records what is due at the end of an increment (0: the initial state), and all its events.
+   subroutine record_increment(self, scene, list, motion, requests, increment, last, error)
+      type(result_file_type), intent(inout) :: self
+      type(scene_type), intent(inout) :: scene
+      type(contact_pair_list_type), intent(in) :: list
+      type(contact_motion_type), intent(in) :: motion
+      type(request_type), intent(in) :: requests(:)
+      integer, intent(in) :: increment
+      logical, intent(in) :: last                !! of the step
+      type(error_type), allocatable, intent(out) :: error
+      type(snapshot_type) :: snapshot
+      logical :: print_due, frame_due, energy_due
+
+      call record_events(self, scene, list, error)
+      if (allocated(error)) return
+      print_due = is_due(requests, [request_node_print, request_element_print, &
+            request_contact_print], increment, last)
+      energy_due = is_due(requests, [request_energy_print], increment, last)
+      frame_due = is_due(requests, [request_node_file, request_element_file, &
+            request_contact_file], increment, last) .or. increment == 0 .or. last
+      if (energy_due) call record_energy(self, scene, motion%motion%t, error)
+      if (allocated(error) .or. .not. (print_due .or. frame_due)) return
+      call take_snapshot(snapshot, scene, motion, self%history%needs_reactions &
+            .or. self%grid%needs_reactions)
+      if (print_due) call record_history(self%history, self%file, scene, list, snapshot, error)
+      if (allocated(error)) return
+      if (frame_due) call record_frame(self%grid, self%file, scene, list, snapshot, error)
+   end subroutine record_increment
+
+   subroutine record_energy(self, scene, t, error)
+      type(result_file_type), intent(inout) :: self
+      type(scene_type), intent(in) :: scene
+      real(wp), intent(in) :: t
+      type(error_type), allocatable, intent(out) :: error
+
+      associate (ledger => scene%ledger)
+         call self%energy%append_row(self%file, [t, ledger%kinetic, ledger%strain, ledger%damping, &
+               ledger%plastic, ledger%friction, ledger%impact_loss, ledger%external_work, ledger%total, &
+               ledger%balance_error], error)
+      end associate
+   end subroutine record_energy
+
+   subroutine record_events(self, scene, list, error)
+      type(result_file_type), intent(inout) :: self
+      type(scene_type), intent(inout) :: scene
+      type(contact_pair_list_type), intent(in) :: list
+      type(error_type), allocatable, intent(out) :: error
+      character(len=text_length) :: texts(2)
+      character(len=len(list%names)) :: name
+      integer :: i
+
+      do i = 1, scene%n_events
+         associate (event => scene%events(i))
+            texts(1) = event_name(event%kind)
+            name = list%names(list%rows(event%row)%pair)
+            texts(2) = name(:text_length)
+            call self%events%append_row(self%file, [event%time, event%rate_before, &
+                  event%rate_after, event%impulse, event%beta], [scene%rows%node_id(event%row)], &
+                  texts, error)
+         end associate
+         if (allocated(error)) return
+      end do
+      scene%n_events = 0
+   end subroutine record_events
+
+   !> The word for a kind of event.
+   pure function event_name(kind) result(name)
+      integer, intent(in) :: kind
+      character(len=8) :: name
+
+      select case (kind)
+      case (event_impact)
+         name = 'impact'
+      case (event_capture)
+         name = 'capture'
+      case (event_release)
+         name = 'release'
+      case (event_contact)
+         name = 'contact'
+      case default
+         name = 'limit'
+      end select
+   end function event_name
+
+   !> Brings all that is held in memory into the file.
+   subroutine flush_results(self, error)
+      type(result_file_type), intent(inout) :: self
+      type(error_type), allocatable, intent(out) :: error
+
+      call self%grid%grid%flush(self%file, error)
+      if (allocated(error)) return
+      call self%history%table%flush(self%file, error)
+      if (allocated(error)) return
+      if (self%plan%energy) call self%energy%flush(self%file, error)
+      if (allocated(error)) return
+      call self%events%flush(self%file, error)
+      if (allocated(error)) return
+      call self%file%flush(error)
+   end subroutine flush_results
+
+   !> Flushes and closes; called also when a run stops early.
+   subroutine close_results(self, error)
+      type(result_file_type), intent(inout) :: self
+      type(error_type), allocatable, intent(out) :: error
+
+      if (.not. self%file%is_open()) return
+      call flush_results(self, error)
+      if (allocated(error)) return
+      call self%file%close(error)
+   end subroutine close_results
+
+end module result_file

@@ -1,0 +1,76 @@
+!> The log and status files beside the result, and what the terminal shows.
+module run_log
+   use, intrinsic :: iso_fortran_env, only: output_unit
+   use kinds, only: wp
+   use errors, only: error_type, new_error, status_file
+   implicit none
+   private
+
+   public :: log_type, open_log, close_log, say, write_status
+
+   !> Where lines go. Without files (a mere check), to the terminal alone.
+   type :: log_type
+      integer :: log_unit = -1
+      integer :: status_unit = -1
+      logical :: terminal = .true.          !! copies of what is said
+   end type log_type
+
+contains
+
+   !> Creates STEM.log and STEM.sta.
+   subroutine open_log(self, stem, quiet, error)
+      type(log_type), intent(out) :: self
+      character(len=*), intent(in) :: stem
+      logical, intent(in) :: quiet
+      type(error_type), allocatable, intent(out) :: error
+
+      self%terminal = .not. quiet
+      call open_text(stem//'.log', self%log_unit, error)
+      if (allocated(error)) return
+      call open_text(stem//'.sta', self%status_unit, error)
+      if (allocated(error)) return
+      write (self%status_unit, '(a)') '# step  increment    step time      total time     '// &
+            'increment      iterations  events'
+   end subroutine open_log
+
+   subroutine open_text(path, unit, error)
+      character(len=*), intent(in) :: path
+      integer, intent(out) :: unit
+      type(error_type), allocatable, intent(out) :: error
+      character(len=200) :: message
+      integer :: status
+
+      open (newunit=unit, file=path, status='replace', action='write', iostat=status, iomsg=message)
+      if (status /= 0) call new_error(error, status_file, 'cannot write '//path//': '//trim(message))
+   end subroutine open_text
+
+   !> One line (or several, parted by new lines) for the log and the terminal.
+   subroutine say(self, line)
+      type(log_type), intent(in) :: self
+      character(len=*), intent(in) :: line
+
+      if (self%log_unit /= -1) write (self%log_unit, '(a)') line
+      if (self%terminal) write (output_unit, '(a)') line
+   end subroutine say
+
+   !> One line of the status file an increment.
+   subroutine write_status(self, counts, times)
+      type(log_type), intent(in) :: self
+      integer, intent(in) :: counts(4)           !! step, increment, iterations, events
+      real(wp), intent(in) :: times(3)           !! step time, total time, increment
+
+      if (self%status_unit == -1) return
+      write (self%status_unit, '(i6,i11,3es15.6,i12,i8)') counts(1:2), times, counts(3:4)
+   end subroutine write_status
+
+   !> Closes the files.
+   subroutine close_log(self)
+      type(log_type), intent(inout) :: self
+
+      if (self%log_unit /= -1) close (self%log_unit)
+      if (self%status_unit /= -1) close (self%status_unit)
+      self%log_unit = -1
+      self%status_unit = -1
+   end subroutine close_log
+
+end module run_log

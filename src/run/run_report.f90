@@ -1,0 +1,146 @@
+!> What the log says of a model, its steps and a finished run.
+module run_report
+   use kinds, only: wp, int64
+   use text, only: to_text, plural
+   use mesh, only: scheme_implicit, scheme_explicit
+   use steps, only: procedure_static
+   use skyline_matrix, only: profile_type
+   use surfaces, only: beta_given
+   use transformation, only: impact_beta
+   use impact_scene, only: event_impact, event_capture, event_release, event_contact, event_limit
+   use scene_setup, only: simulation_type, count_increments
+   use run_log, only: log_type, say
+   use command_line, only: version_text
+   implicit none
+   private
+
+   public :: report_model, report_step, report_notes, report_summary
+
+contains
+
+   !> Heading, sizes, notes on the deck.
+   subroutine report_model(simulation, log)
+      type(simulation_type), intent(in) :: simulation
+      type(log_type), intent(in) :: log
+
+      call say(log, 'carom '//version_text)
+      if (len_trim(simulation%model%heading) > 0) call say(log, trim(simulation%model%heading))
+      call say(log, 'model: '//plural(simulation%model%nodes%n, 'node')//', ' &
+            //plural(simulation%model%elements%n, 'element')//' in ' &
+            //plural(size(simulation%scene%system%structure%groups), 'group')//', ' &
+            //plural(simulation%scene%system%structure%map%n_freedoms, 'freedom')//', ' &
+            //plural(simulation%scene%rows%n, 'contact row'))
+   end subroutine report_model
+
+   !> Procedure, equations, profile, groups, critical step, impact method.
+   subroutine report_step(simulation, i_step, log)
+      type(simulation_type), intent(in) :: simulation
+      integer, intent(in) :: i_step
+      type(log_type), intent(in) :: log
+      character(len=:), allocatable :: line
+      integer(int64) :: entries
+
+      associate (step => simulation%model%steps(i_step), system => simulation%scene%system)
+         line = 'step '//to_text(i_step)//': '//merge('static ', 'dynamic', system%static)
+         if (len_trim(step%name) > 0) line = line//' '//trim(step%name)
+         call say(log, line//', '//plural(count_increments(step), 'increment')//' of ' &
+               //to_text(step%dt)//' over '//to_text(step%duration))
+         entries = profile_entries(system%profile)
+         call say(log, '  '//plural(system%structure%map%n_eq, 'equation')//', profile ' &
+               //to_text(entries)//' entries ('//to_text(8.0e-6_wp*real(entries, wp), 3)//' MB)')
+         if (.not. system%static) call report_dynamics(simulation, log)
+      end associate
+   end subroutine report_step
+
+   pure function profile_entries(profile) result(entries)
+      type(profile_type), intent(in) :: profile
+      integer(int64) :: entries
+      integer :: j
+
+      entries = 0
+      do j = 1, profile%n
+         entries = entries + j - profile%first_row(j) + 1
+      end do
+   end function profile_entries
+
+   subroutine report_dynamics(simulation, log)
+      type(simulation_type), intent(in) :: simulation
+      type(log_type), intent(in) :: log
+      character(len=:), allocatable :: line
+      integer :: n_explicit, g
+
+      n_explicit = 0
+      associate (system => simulation%scene%system)
+         do g = 1, size(system%structure%groups)
+            if (system%structure%groups(g)%scheme /= scheme_explicit) cycle
+            n_explicit = n_explicit + size(system%structure%groups(g)%member)
+         end do
+         line = '  Newmark gamma '//to_text(system%newmark%gamma)//', beta ' &
+               //to_text(system%newmark%beta)
+         if (abs(system%newmark%alpha) > 0.0_wp) line = line//', HHT alpha ' &
+               //to_text(system%newmark%alpha)
+         call say(log, line)
+         if (n_explicit > 0) call say(log, '  '//plural(n_explicit, 'explicit element') &
+               //', critical step '//to_text(simulation%critical(scheme_explicit)%step))
+         if (simulation%critical(scheme_implicit)%omega > 0.0_wp) call say(log, &
+               '  highest implicit frequency at most ' &
+               //to_text(simulation%critical(scheme_implicit)%omega)//' rad/time')
+      end associate
+      call report_impact(simulation, log)
+   end subroutine report_dynamics
+
+   subroutine report_impact(simulation, log)
+      type(simulation_type), intent(in) :: simulation
+      type(log_type), intent(in) :: log
+      character(len=:), allocatable :: line
+
+      if (simulation%scene%rows%n == 0) return
+      associate (settings => simulation%scene%settings)
+         if (settings%fictitious) then
+            line = '  impact: fictitious force, return parameter '//to_text(settings%return_parameter)
+            if (settings%direct) line = line//', fixed point solved directly'
+         else
+            line = '  impact: transformation, beta of the impact step ' &
+                  //to_text(impact_beta(simulation%scene, &
+                  simulation%model%steps(1)%dt))//' ('//trim(merge('given    ', &
+                  'automatic', settings%beta_choice == beta_given))//')'
+         end if
+      end associate
+      call say(log, line)
+   end subroutine report_impact
+
+   !> Notes on the deck and its steps.
+   subroutine report_notes(simulation, log)
+      type(simulation_type), intent(in) :: simulation
+      type(log_type), intent(in) :: log
+      integer :: i
+
+      do i = 1, size(simulation%remarks)
+         call say(log, 'note: '//simulation%remarks(i)%text)
+      end do
+   end subroutine report_notes
+
+   !> Counts, energies and cost of a run.
+   subroutine report_summary(simulation, seconds, log)
+      type(simulation_type), intent(in) :: simulation
+      real(wp), intent(in) :: seconds            !! elapsed
+      type(log_type), intent(in) :: log
+
+      associate (n => simulation%n_events, matrices => simulation%scene%system%matrices, &
+            ledger => simulation%scene%ledger)
+         call say(log, 'reached time '//to_text(simulation%motion%motion%t))
+         if (simulation%scene%rows%n > 0) call say(log, 'events: ' &
+               //to_text(n(event_impact))//' impacts, '//to_text(n(event_contact))//' overlaps, ' &
+               //to_text(n(event_capture))//' captures, '//to_text(n(event_release))//' releases')
+         if (n(event_limit) > 0) call say(log, 'warning: MAX EVENTS was reached; rows captured by it: ' &
+               //to_text(n(event_limit)))
+         call say(log, 'energy: kinetic '//to_text(ledger%kinetic)//', strain '//to_text(ledger%strain) &
+               //', damping '//to_text(ledger%damping)//', impacts '//to_text(ledger%impact_loss) &
+               //', external work '//to_text(ledger%external_work)//', balance error ' &
+               //to_text(ledger%balance_error, 3))
+         call say(log, 'cost: '//to_text(matrices%n_factorizations)//' factorizations, ' &
+               //to_text(matrices%n_solves)//' solves, '//to_text(seconds, 3)//' s')
+      end associate
+   end subroutine report_summary
+
+end module run_report

@@ -1,0 +1,316 @@
+!> From the model to a scene that can be computed, step by step, with every check that can be made
+!> before the first increment.
+module scene_setup
+   use kinds, only: wp, int64
+   use errors, only: error_type
+   use text, only: to_text
+   use places, only: fail_at, note_at, place_type, source_line_type
+   use model, only: model_type
+   use mesh, only: scheme_implicit, scheme_explicit
+   use steps, only: step_type, procedure_static
+   use histories, only: boundary_type, nodal_value_type
+   use structure, only: structure_type, new_structure, freedom_name, row_sum_mass
+   use dof_map, only: number_equations
+   use effective_matrix, only: find_profile
+   use external_load, only: begin_loads
+   use prescribed_motion, only: begin_motions, start_motions, prescribed_freedoms
+   use equation_of_motion, only: system_type, impose
+   use critical_step, only: critical_type, find_critical
+   use contact_pairs, only: contact_pair_list_type, find_contact_rows
+   use constraint_rows, only: new_rows, row_gaps, gap_size
+   use impact_scene, only: scene_type, contact_motion_type, new_contact_motion, merge_gap_tolerance
+   use impact_method, only: impact_method_type
+   use impact_factory, only: make_impact_method
+   implicit none
+   private
+
+   public :: simulation_type, build_scene, begin_step, initial_motion, add_remark
+   public :: count_increments, last_increment, count_events
+
+   !> All that a run computes with.
+   type :: simulation_type
+      type(model_type) :: model
+      type(scene_type) :: scene
+      type(contact_pair_list_type) :: contact
+      class(impact_method_type), allocatable :: method
+      type(contact_motion_type) :: motion
+      type(critical_type) :: critical(2)         !! of the implicit and explicit elements, this step
+      integer, allocatable :: deck_scheme(:)     !! (n_groups) as the deck has it
+      type(source_line_type), allocatable :: remarks(:)
+      integer(int64) :: n_events(5) = 0          !! by event_ kinds, over the whole run
+   end type simulation_type
+
+contains
+
+   !> Structure, contact rows and impact method from the model in `self`; initial motion.
+   subroutine build_scene(self, error)
+      type(simulation_type), intent(inout) :: self
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      self%remarks = self%model%notes
+      call new_structure(self%scene%system%structure, self%model, error)
+      if (allocated(error)) return
+      self%deck_scheme = self%scene%system%structure%groups%scheme
+      call find_contact_rows(self%model, self%contact, error)
+      if (allocated(error)) return
+      call new_rows(self%scene%rows, self%contact, self%model, self%scene%system%structure, error)
+      if (allocated(error)) return
+      call make_impact_method(self%model, self%contact, self%method, self%scene%settings, error)
+      if (allocated(error)) return
+      self%scene%impulse = [(0.0_wp, i=1, self%scene%rows%n)]
+      call check_freedoms_named(self, error)
+      if (allocated(error)) return
+      call initial_motion(self, error)
+   end subroutine build_scene
+
+   !> Appends a remark for the log.
+   subroutine add_remark(self, remark)
+      type(simulation_type), intent(inout) :: self
+      character(len=*), intent(in) :: remark
+      type(source_line_type), allocatable :: longer(:)
+      integer :: i, n
+
+      n = size(self%remarks)
+      do i = 1, n
+         if (self%remarks(i)%text == remark) return
+      end do
+      allocate (longer(n + 1))
+      longer(:n) = self%remarks
+      longer(n + 1)%text = remark
+      call move_alloc(longer, self%remarks)
+   end subroutine add_remark
+
+   !> Loads and initial conditions need a freedom that exists; a boundary condition without one is
+   !> noted.
+   subroutine check_freedoms_named(self, error)
+      type(simulation_type), intent(inout) :: self
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      call note_idle_boundaries(self, self%model%boundaries)
+      call check_values(self, self%model%initial_displacements, 'initial displacement', error)
+      if (allocated(error)) return
+      call check_values(self, self%model%initial_velocities, 'initial velocity', error)
+      if (allocated(error)) return
+      do i = 1, size(self%model%steps)
+         call note_idle_boundaries(self, self%model%steps(i)%boundaries)
+         call check_values(self, self%model%steps(i)%loads, 'load', error)
+         if (allocated(error)) return
+         call check_values(self, self%model%steps(i)%initial_velocities, 'initial velocity', error)
+         if (allocated(error)) return
+      end do
+   end subroutine check_freedoms_named
+
+   subroutine note_idle_boundaries(self, boundaries)
+      type(simulation_type), intent(inout) :: self
+      type(boundary_type), intent(in) :: boundaries(:)
+      integer :: i, noted_line
+
+      noted_line = 0
+      do i = 1, size(boundaries)
+         if (self%scene%system%structure%map%freedom(boundaries(i)%dof, boundaries(i)%node) > 0) cycle
+         if (boundaries(i)%place%line == noted_line) cycle
+         noted_line = boundaries(i)%place%line
+         call add_remark(self, note_at(self%model%source, boundaries(i)%place, &
+               'holds directions in which nothing can move; accepted'))
+      end do
+   end subroutine note_idle_boundaries
+
+   subroutine check_values(self, values, what, error)
+      type(simulation_type), intent(in) :: self
+      type(nodal_value_type), intent(in) :: values(:)
+      character(len=*), intent(in) :: what
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      do i = 1, size(values)
+         if (self%scene%system%structure%map%freedom(values(i)%dof, values(i)%node) > 0) cycle
+         if (.not. abs(values(i)%value) > 0.0_wp) cycle
+         call fail_at(error, self%model%source, values(i)%place, what//' on node ' &
+               //to_text(self%model%nodes%id(values(i)%node))//', freedom '//to_text(values(i)%dof) &
+               //', which does not exist: no element there can move that way', &
+               'load a direction that an element or a mass has')
+         return
+      end do
+   end subroutine check_values
+
+   !> Initial displacements and velocities of the model; an overlap at the start is an error.
+   subroutine initial_motion(self, error)
+      type(simulation_type), intent(inout) :: self
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), allocatable :: gaps(:)
+      integer :: i
+
+      associate (structure => self%scene%system%structure)
+         call new_contact_motion(self%motion, structure%map%n_freedoms, self%scene%rows%n)
+         call put_values(structure, self%model%initial_displacements, self%motion%motion%d)
+         call put_values(structure, self%model%initial_velocities, self%motion%motion%v)
+      end associate
+      if (self%scene%rows%n == 0) return
+      gaps = row_gaps(self%scene%rows, self%motion%motion)
+      i = minloc(gaps, dim=1)
+      if (gaps(i) >= -merge_gap_tolerance*gap_size(self%scene%rows, self%motion%motion, 0.0_wp)) return
+      call fail_at(error, self%model%source, self%contact%rows(i)%place, 'node ' &
+            //to_text(self%scene%rows%node_id(i))//' overlaps its contact partner by ' &
+            //to_text(-gaps(i))//' at the start', &
+            'move the node or the wall, or give an initial displacement without overlap')
+   end subroutine initial_motion
+
+   subroutine put_values(structure, values, vector)
+      type(structure_type), intent(in) :: structure
+      type(nodal_value_type), intent(in) :: values(:)
+      real(wp), intent(inout) :: vector(:)
+      integer :: i, f
+
+      do i = 1, size(values)
+         f = structure%map%freedom(values(i)%dof, values(i)%node)
+         if (f > 0) vector(f) = values(i)%value
+      end do
+   end subroutine put_values
+
+   !> Brings a step into force: conditions, loads, equations, profile, parameters. Errors: explicit
+   !> step over the critical one, explicit freedoms without mass.
+   subroutine begin_step(self, i_step, error)
+      type(simulation_type), intent(inout) :: self
+      integer, intent(in) :: i_step
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: t
+
+      t = self%motion%motion%t
+      call check_increments(self, i_step, error)
+      if (allocated(error)) return
+      associate (step => self%model%steps(i_step), system => self%scene%system)
+         system%static = step%procedure == procedure_static
+         system%newmark%gamma = step%gamma
+         system%newmark%beta = step%beta
+         system%newmark%alpha = step%alpha
+         system%structure%groups%scheme = self%deck_scheme
+         if (step%explicit) system%structure%groups%scheme = scheme_explicit
+         call begin_conditions(self, i_step, t)
+         call number_equations(system%structure%map, &
+               prescribed_freedoms(system%motions, system%structure%map%n_freedoms), self%model%equations)
+         call find_profile(system%structure, system%profile)
+         call system%matrices%forget()
+         call find_massless(system)
+         call begin_loads(system%loads, system%structure, self%model, i_step, t)
+         if (system%static) return
+         call put_values(system%structure, step%initial_velocities, self%motion%motion%v)
+         call impose(system, self%motion%motion)
+         call check_critical(self, step, error)
+      end associate
+   end subroutine begin_step
+
+   !> INC must allow all increments of the step.
+   subroutine check_increments(self, i_step, error)
+      type(simulation_type), intent(in) :: self
+      integer, intent(in) :: i_step
+      type(error_type), allocatable, intent(out) :: error
+
+      associate (step => self%model%steps(i_step))
+         if (step%max_increments == 0) return
+         if (count_increments(step) <= step%max_increments) return
+         call fail_at(error, self%model%source, step%place, 'the step needs ' &
+               //to_text(count_increments(step))//' increments, INC allows '//to_text(step%max_increments), &
+               'raise INC, or take larger increments')
+      end associate
+   end subroutine check_increments
+
+   !> Increments of a step; a remainder of more than round-off gets one of its own.
+   pure function count_increments(step) result(n)
+      type(step_type), intent(in) :: step
+      integer :: n
+
+      n = max(1, ceiling(step%duration/step%dt*(1.0_wp - 1.0e-9_wp)))
+   end function count_increments
+
+   !> Length of the last increment: the step's dt unless a remainder is left.
+   pure function last_increment(step, n) result(dt)
+      type(step_type), intent(in) :: step
+      integer, intent(in) :: n
+      real(wp) :: dt
+
+      dt = step%duration - (n - 1)*step%dt
+      if (abs(dt - step%dt) <= 1.0e-6_wp*step%dt) dt = step%dt
+   end function last_increment
+
+   !> Adds the events of the increment at hand to the count of the run.
+   pure subroutine count_events(self)
+      type(simulation_type), intent(inout) :: self
+      integer :: i
+
+      do i = 1, self%scene%n_events
+         associate (kind => self%scene%events(i)%kind)
+            self%n_events(kind) = self%n_events(kind) + 1
+         end associate
+      end do
+   end subroutine count_events
+
+   subroutine begin_conditions(self, i_step, t)
+      type(simulation_type), intent(inout) :: self
+      integer, intent(in) :: i_step
+      real(wp), intent(in) :: t
+      type(boundary_type), allocatable :: boundaries(:)
+
+      associate (step => self%model%steps(i_step), system => self%scene%system)
+         boundaries = step%boundaries
+         if (i_step == 1) boundaries = [self%model%boundaries, step%boundaries]
+         call begin_motions(system%motions, boundaries, system%structure%map%freedom, &
+               self%model%amplitudes, .not. step%new_boundaries, [t, step%duration], system%static)
+         call start_motions(system%motions, t, self%motion%motion%d, self%motion%motion%v)
+      end associate
+   end subroutine begin_conditions
+
+   !> Equations without mass: they have no acceleration of their own.
+   subroutine find_massless(system)
+      type(system_type), intent(inout) :: system
+      integer :: f, i
+      real(wp), allocatable :: m(:)
+
+      if (allocated(system%massless)) deallocate (system%massless)
+      allocate (system%massless(system%structure%map%n_eq))
+      system%massless = .true.
+      m = row_sum_mass(system%structure)
+      associate (map => system%structure%map)
+         do f = 1, map%n_freedoms
+            if (.not. m(f) > 0.0_wp) cycle
+            do i = map%first(f), map%first(f + 1) - 1
+               system%massless(map%equation(i)) = .false.
+            end do
+         end do
+      end associate
+   end subroutine find_massless
+
+   !> The critical step of explicit elements, and the highest implicit frequency.
+   subroutine check_critical(self, step, error)
+      type(simulation_type), intent(inout) :: self
+      type(step_type), intent(in) :: step
+      type(error_type), allocatable, intent(out) :: error
+      character(len=:), allocatable :: culprit
+      real(wp), parameter :: slack = 1.0e-9_wp
+
+      associate (structure => self%scene%system%structure, limit => self%critical(scheme_explicit))
+         call find_critical(structure, scheme_implicit, step%gamma, self%critical(scheme_implicit))
+         call find_critical(structure, scheme_explicit, step%gamma, limit)
+         self%scene%system%omega_max = self%critical%omega
+         if (limit%massless_freedom > 0) then
+            call fail_at(error, self%model%source, step%procedure_place, &
+                  freedom_name(structure, limit%massless_freedom)//' is explicit and has no mass', &
+                  'give it a mass, or make its elements implicit with *ELEMENT GROUP')
+         else if (step%dt > limit%step*(1.0_wp + slack)) then
+            culprit = ''
+            if (limit%element > 0) culprit = ' of explicit element ' &
+                  //to_text(self%model%elements%id(limit%element))
+            call fail_at(error, self%model%source, step%time_place, 'the step '//to_text(step%dt) &
+                  //' is over the critical step '//to_text(limit%step)//culprit, &
+                  'take a step of at most '//to_text(0.9_wp*limit%step) &
+                  //' (0.9 of the critical one), or make the element implicit with *ELEMENT GROUP')
+         else if (step%dt > 0.95_wp*limit%step .and. self%scene%rows%n > 0) then
+            call add_remark(self, note_at(self%model%source, step%time_place, 'the step is within ' &
+                  //'5 % of the critical step '//to_text(limit%step) &
+                  //': contact then feeds the highest explicit mode, take 0.9 of it or less'))
+         end if
+      end associate
+   end subroutine check_critical
+
+end module scene_setup
