@@ -1,0 +1,96 @@
+"""Runs decks and compares figures: what every verification script shares.
+
+A script makes one `Checks` object, calls its `at_most`, `close`, `true` with a sentence each, and
+ends with `checks.finish()`, which prints a line a check and exits 1 if one failed.
+"""
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+INPUT = ROOT / 'input'
+sys.path.insert(0, str(ROOT / 'scripts'))
+
+
+class Run:
+    """A finished run: exit status, output text, and the result file if there is one."""
+
+    def __init__(self, status, text, path):
+        self.status, self.text, self.path = status, text, path
+        self.file = h5py.File(path, 'r') if path.exists() else None
+
+    def __getitem__(self, name):
+        """A dataset as an array: 'history/node_1/U1', 'energy/total'."""
+        return np.asarray(self.file[name])
+
+    def events(self, kind='impact'):
+        """The rows of /events of one kind as a dictionary of arrays."""
+        kinds = np.array([text.decode() for text in self['events/kind']], dtype=object)
+        return {name: np.asarray(data)[kinds == kind]
+                for name, data in self.file['events'].items()}
+
+
+def run_deck(deck, command='run', expect_status=0, **definitions):
+    """Runs `carom` (given as the first argument of the script) on a deck: a path, or the text of one."""
+    folder = Path(tempfile.mkdtemp(prefix='carom_'))
+    if '\n' in str(deck):
+        path = folder / 'deck.inp'
+        path.write_text(deck)
+    else:
+        path = Path(deck)
+    result = folder / 'result.h5'
+    words = [str(Path(sys.argv[1]).resolve()), command, str(path)]
+    if command == 'run':
+        words += ['-o', str(result), '--quiet']
+    for name, value in definitions.items():
+        words += ['--define', f'{name}={value!r}' if isinstance(value, float) else f'{name}={value}']
+    done = subprocess.run(words, capture_output=True, text=True, timeout=600,
+                          env={**os.environ, 'OPENBLAS_NUM_THREADS': '1'})
+    if done.returncode != expect_status:
+        print(done.stdout + done.stderr)
+        sys.exit(f'FAILED: {" ".join(words)} ended with {done.returncode}, not {expect_status}')
+    return Run(done.returncode, done.stdout + done.stderr, result)
+
+
+class Checks:
+    """Collects what was checked; every check prints its figure."""
+
+    def __init__(self):
+        self.failed = 0
+        self.count = 0
+
+    def _say(self, good, sentence):
+        self.count += 1
+        self.failed += not good
+        print(('ok      ' if good else 'FAILED  ') + sentence)
+
+    def at_most(self, value, limit, sentence):
+        """value <= limit; NaN fails."""
+        self._say(bool(value <= limit), f'{sentence}: {value:.6g} <= {limit:.6g}')
+
+    def at_least(self, value, limit, sentence):
+        """value >= limit; NaN fails."""
+        self._say(bool(value >= limit), f'{sentence}: {value:.6g} >= {limit:.6g}')
+
+    def close(self, value, expected, tolerance, sentence):
+        """|value - expected| <= tolerance (absolute), for numbers and arrays of one shape."""
+        value, expected = np.atleast_1d(value), np.atleast_1d(expected)
+        if value.shape != expected.shape:
+            self._say(False, f'{sentence}: {value.shape} values instead of {expected.shape}')
+            return
+        error = float(np.max(np.abs(value - expected))) if value.size else 0.0
+        self._say(error <= tolerance, f'{sentence}: off by {error:.3g} <= {tolerance:.3g}')
+
+    def true(self, condition, sentence):
+        """The condition holds."""
+        self._say(bool(condition), sentence)
+
+    def finish(self):
+        """Ends the script: status 1 if a check failed or none was made."""
+        print(f'{self.count - self.failed} of {self.count} checks passed')
+        sys.exit(0 if self.count and not self.failed else 1)
