@@ -7,7 +7,7 @@ module card_rules
    implicit none
    private
 
-   public :: check_keyword, check_card, usage_of, is_note_card
+   public :: check_keyword, check_card, usage_of, name_of, is_note_card
 
    integer, parameter :: rule_length = 150
 
@@ -83,6 +83,14 @@ contains
       if (rule > 0) usage = trim(part(rule, 4))
    end function usage_of
 
+   !> The keyword as it is usually written.
+   pure function name_of(rule) result(name)
+      integer, intent(in) :: rule
+      character(len=:), allocatable :: name
+
+      name = '*'//trim(part(rule, 1))
+   end function name_of
+
    !> True for a card that is accepted but cannot change the answer.
    pure function is_note_card(rule) result(note)
       integer, intent(in) :: rule
@@ -130,7 +138,7 @@ contains
       character(len=:), allocatable :: level, name
 
       level = trim(part(card%rule, 2))
-      name = '*'//trim(part(card%rule, 1))
+      name = name_of(card%rule)
       if (level == '~') then
          call fail_at(error, source, card%place, name//' is known but does not work yet', &
                cure='remove the card')
@@ -160,7 +168,7 @@ contains
             if (given%place%line /= card%place%line) continued = &
                   '; the comma at the end of the line before continues the keyword line'
             call fail_at(error, source, given%place, "unknown parameter '"//given%name// &
-                  "' of *"//trim(part(card%rule, 1)), cure=advice(given%name, list)//continued)
+                  "' of "//name_of(card%rule), cure=advice(given%name, list)//continued)
             return
          end if
          do j = 1, i - 1
@@ -205,7 +213,7 @@ contains
       do k = 1, size(list)
          if (index(parameter_marks(card%rule, k), '!') == 0) cycle
          if (has_parameter(card, squeezed(list(k)))) cycle
-         call fail_at(error, source, card%place, '*'//trim(part(card%rule, 1))// &
+         call fail_at(error, source, card%place, name_of(card%rule)// &
                ' needs the parameter '//trim(list(k)), cure='write '//trim(list(k))//'=value')
          return
       end do
@@ -222,12 +230,12 @@ contains
 
       usage = usage_of(card%rule)
       if (usage == '-' .and. card%last >= card%first) then
-         call fail_at(error, source, data(card%first), '*'//trim(part(card%rule, 1))// &
+         call fail_at(error, source, data(card%first), name_of(card%rule)// &
                ' takes no data lines', cure='remove the line, or put its keyword before it')
       end if
       if (usage == '-' .or. card%last >= card%first) return
       if (find_word(card%keyword, optional_data) > 0) return
-      call fail_at(error, source, card%place, '*'//trim(part(card%rule, 1))// &
+      call fail_at(error, source, card%place, name_of(card%rule)// &
             ' has no data lines', cure='a line is: '//usage)
    end subroutine check_data
 

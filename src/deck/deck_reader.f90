@@ -5,7 +5,7 @@ module deck_reader
    use model, only: model_type
    use histories, only: boundary_type, nodal_value_type
    use cards, only: deck_type
-   use card_rules, only: check_card, is_note_card
+   use card_rules, only: check_card, name_of, is_note_card
    use card_splitter, only: split_deck
    use symbols, only: definition_type, read_symbols, apply_definitions, substitute_in_cards
    use symbols, only: mark_used_symbols
@@ -66,7 +66,7 @@ contains
          call check_card(deck%cards(i), deck%data, model%source, error)
          if (allocated(error)) return
          if (is_note_card(deck%cards(i)%rule)) call add_note(model%notes, note_at(model%source, &
-               deck%cards(i)%place, '*'//deck%cards(i)%keyword//' has no effect here'))
+               deck%cards(i)%place, name_of(deck%cards(i)%rule)//' has no effect here'))
          if (deck%cards(i)%keyword == 'HEADING') call add_heading(model, deck, i)
       end do
       call mark_used_symbols(deck, model%source)

@@ -10,6 +10,7 @@ module load_reader
    use fields, only: fields_type, split_line, check_count, only_line, field_place, field_text
    use fields, only: is_given, get_reals, get_name
    use amplitude_reader, only: find_amplitude
+   use numbers, only: unit_vector
    use set_reader, only: find_element_set
    use words, only: word_length, squeezed, advice
    implicit none
@@ -93,12 +94,12 @@ contains
       end if
       call get_reals(fields, 3, 3, 'size and direction', values, model%source, error)
       if (allocated(error)) return
-      if (norm2(values(2:)) <= 0.0_wp) then
+      if (all(abs(values(2:)) <= 0.0_wp)) then
          call fail_at(error, model%source, field_place(fields, 4), &
                'this direction has no length', cure='write a vector of any length but zero')
          return
       end if
-      gravity%acceleration = values(1)*values(2:)/norm2(values(2:))
+      gravity%acceleration = values(1)*unit_vector(values(2:))
    end subroutine read_gravity_line
 
    !> All *BASE MOTION cards of a step.

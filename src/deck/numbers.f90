@@ -4,7 +4,7 @@ module numbers
    implicit none
    private
 
-   public :: parse_integer, parse_real, parse_fraction
+   public :: parse_integer, parse_real, parse_fraction, unit_vector
 
 contains
 
@@ -95,6 +95,15 @@ contains
          cause = "the number '"//string//"' is too large"
       end if
    end subroutine parse_fraction
+
+   !> A vector of any length but zero made one of length one, without overflow on the way.
+   pure function unit_vector(vector) result(direction)
+      real(wp), intent(in) :: vector(:)
+      real(wp) :: direction(size(vector))
+
+      direction = vector/maxval(abs(vector))
+      direction = direction/norm2(direction)
+   end function unit_vector
 
    !> Takes a number apart; its size is mantissa times ten to the exponent, as long as the
    !> significant digits number 18 or fewer (further digits count in n_digits alone).

@@ -13,6 +13,7 @@ module section_reader
    use cards, only: has_parameter
    use fields, only: fields_type, only_line, field_place, get_reals
    use spring_reader, only: read_spring
+   use numbers, only: unit_vector
    use set_reader, only: find_element_set
    use mesh_reader, only: kind_names
    use words, only: advice
@@ -248,7 +249,8 @@ contains
       if (section%interaction == 0) then
          call fail_at(error, model%source, parameter_place(card, 'INTERACTION'), &
                'no such surface interaction: '//trim(name), &
-               cure='define it with *SURFACE INTERACTION; '//advice(name, [model%interactions%name]))
+               cure='define it with *SURFACE INTERACTION; '// &
+               advice(name, [model%interactions%name]))
          return
       end if
       call only_line(fields, deck, card, 4, model%source, error)
@@ -257,12 +259,12 @@ contains
       if (allocated(error)) return
       section%clearance = values(1)
       if (fields%n == 1) return
-      if (norm2(values(2:)) <= 0.0_wp) then
+      if (all(abs(values(2:)) <= 0.0_wp)) then
          call fail_at(error, model%source, field_place(fields, 2), 'the normal has no length', &
                cure='write nx, ny, nz, or leave them out')
          return
       end if
-      section%normal = values(2:)/norm2(values(2:))
+      section%normal = unit_vector(values(2:))
    end subroutine read_gap
 
    !> Gives the elements of the section's set their section; a second one is an error.

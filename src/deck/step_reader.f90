@@ -154,6 +154,9 @@ contains
       else if (step%duration < step%dt) then
          call fail_at(error, source, field_place(fields, 2), &
                'the duration must not be shorter than the time step', cure='a line is: dt, T')
+      else if (step%duration/huge(1) > step%dt) then
+         call fail_at(error, source, field_place(fields, 1), &
+               'the duration takes too many steps', cure='a run has up to 2147483647 steps')
       end if
    end subroutine read_times
 

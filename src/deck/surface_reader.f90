@@ -5,11 +5,12 @@ module surface_reader
    use places, only: place_type, fail_at
    use properties, only: name_length
    use model, only: model_type
-   use model_building, only: find_named, sort_unique
+   use model_building, only: find_named, append, fit, sort_unique
    use cards, only: deck_type, card_type, count_cards, get_word, get_name_parameter
    use cards, only: parameter_place, get_integer_parameter
    use fields, only: fields_type, split_line, check_count, field_place, get_reals, get_name
    use amplitude_reader, only: find_amplitude
+   use numbers, only: unit_vector
    use set_reader, only: find_nodes
    use words, only: word_length, advice
    use text, only: to_text
@@ -71,22 +72,25 @@ contains
       type(fields_type) :: fields
       character(len=name_length) :: name
       integer, allocatable :: nodes(:), more(:)
-      integer :: choice, line, k
+      integer :: choice, line, k, i, n_nodes
 
       call get_new_name(model, card, name, error)
       if (allocated(error)) return
       call get_word(card, 'TYPE', types, choice, model%source, error)
       if (allocated(error)) return
-      allocate (nodes(0))
+      n_nodes = 0
       do line = card%first, card%last
          call split_line(fields, deck, card, line, model%source, error)
          if (allocated(error)) return
          do k = 1, fields%n
             call find_nodes(model, fields, k, more, error)
             if (allocated(error)) return
-            nodes = [nodes, more]
+            do i = 1, size(more)
+               call append(nodes, n_nodes, more(i))
+            end do
          end do
       end do
+      call fit(nodes, n_nodes)
       call sort_unique(nodes)
       model%surfaces(n)%name = name
       model%surfaces(n)%place = card%place
@@ -126,11 +130,11 @@ contains
       call read_vector(model, deck, card, 2, normal, error)
       if (allocated(error)) return
       model%rigid_surfaces(n)%point = point
-      model%rigid_surfaces(n)%normal = normal/norm2(normal)
+      model%rigid_surfaces(n)%normal = unit_vector(normal)
       if (n_lines == 2) return
       call read_vector(model, deck, card, 3, motion, error)
       if (allocated(error)) return
-      model%rigid_surfaces(n)%motion = motion(4)*motion(:3)/norm2(motion(:3))
+      model%rigid_surfaces(n)%motion = motion(4)*unit_vector(motion(:3))
    end subroutine read_rigid_surface
 
    !> Line 1 of a rigid surface (a point), 2 (a direction) or 3 (a direction and a size).
@@ -153,8 +157,9 @@ contains
       call get_reals(fields, 1, n_needed, 'component', values, model%source, error)
       if (allocated(error)) return
       if (k == 1) return
-      if (norm2(values(:3)) <= 0.0_wp) call fail_at(error, model%source, field_place(fields, 1), &
-            'this direction has no length', cure='write a vector of any length but zero')
+      if (all(abs(values(:3)) <= 0.0_wp)) call fail_at(error, model%source, &
+            field_place(fields, 1), 'this direction has no length', &
+            cure='write a vector of any length but zero')
    end subroutine read_vector
 
    !> *CONTACT PAIR, one pair a line.
@@ -202,7 +207,8 @@ contains
       if (interaction == 0) then
          call fail_at(error, model%source, parameter_place(card, 'INTERACTION'), &
                'no such surface interaction: '//trim(name), &
-               cure='define it with *SURFACE INTERACTION; '//advice(name, [model%interactions%name]))
+               cure='define it with *SURFACE INTERACTION; '// &
+               advice(name, [model%interactions%name]))
          return
       end if
       do line = card%first, card%last
@@ -237,7 +243,8 @@ contains
                   'a rigid surface cannot be the slave', cure='write: slave, rigid surface')
          else
             call fail_at(error, model%source, field_place(fields, 1), 'no such surface: '// &
-                  trim(slave), cure='define it with *SURFACE; '//advice(slave, [model%surfaces%name]))
+                  trim(slave), &
+                  cure='define it with *SURFACE; '//advice(slave, [model%surfaces%name]))
          end if
       else if (model%pairs(n)%rigid_target == 0) then
          if (find_named(model%surfaces, master) > 0) then
@@ -247,7 +254,8 @@ contains
          else
             call fail_at(error, model%source, field_place(fields, 2), 'no such rigid surface: '// &
                   trim(master), &
-                  cure='define it with *RIGID SURFACE; '//advice(master, [model%rigid_surfaces%name]))
+                  cure='define it with *RIGID SURFACE; '// &
+                  advice(master, [model%rigid_surfaces%name]))
          end if
       end if
    end subroutine read_pair
