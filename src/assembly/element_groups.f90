@@ -78,6 +78,8 @@ contains
          scheme_of(model%element_sets(model%groups(g)%set)%members) = model%groups(g)%scheme
          lumped_of(model%element_sets(model%groups(g)%set)%members) = lumped
       end do
+      ! Nothing but a truss has a mass matrix that is not diagonal
+      where (model%elements%kind(:model%elements%n) /= element_truss) lumped_of = .true.
    end subroutine resolve_schemes
 
    !> Gives elements of one kind, section, scheme and mass one number; gaps get none.

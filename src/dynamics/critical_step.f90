@@ -23,7 +23,8 @@ module critical_step
 contains
 
    !> Frequencies and explicit critical step h = 2 / (sqrt(omega^2 + (c/2)^2) + c/2) with the
-   !> damping rate c, lagged as explicit damping is (gamma = 1/2; a larger gamma by sqrt(1/(2 gamma))).
+   !> damping rate c, lagged as explicit damping is (gamma = 1/2; a larger gamma by sqrt(1/(2
+   !> gamma))).
    subroutine find_critical(structure, scheme, gamma, critical)
       type(structure_type), intent(in) :: structure
       integer, intent(in) :: scheme
@@ -33,7 +34,8 @@ contains
       real(wp) :: c_diagonal(structure%map%n_freedoms), total
       integer :: g
 
-      m = row_sum_mass(structure)
+      ! The consistent mass of a truss is at least a third of its row sums, in any motion
+      m = (row_sum_mass(structure) + 2.0_wp*structure%lumped_mass)/3.0_wp
       call sum_diagonals(structure, scheme, k_diagonal, c_diagonal)
       do g = 1, size(structure%groups)
          if (structure%groups(g)%scheme /= scheme) cycle
