@@ -12,6 +12,7 @@ program carom
    interface
       subroutine exit_process(status) bind(c, name='exit')
          import :: c_int
+         implicit none
          integer(c_int), value :: status
       end subroutine exit_process
    end interface

@@ -97,7 +97,8 @@ contains
          do i = 2, size(constraints(c)%node)
             n = n + 1
             self%master(n) = self%freedom(constraints(c)%dof(i), constraints(c)%node(i))
-            self%master_coefficient(n) = -constraints(c)%coefficient(i)/constraints(c)%coefficient(1)
+            self%master_coefficient(n) &
+                  = -constraints(c)%coefficient(i)/constraints(c)%coefficient(1)
          end do
       end do
       self%master_first(size(constraints) + 1) = n + 1
@@ -180,7 +181,8 @@ contains
       do c = 1, size(self%dependent)
          from = self%master_first(c)
          to = self%master_first(c + 1) - 1
-         u(self%dependent(c)) = dot_product(self%master_coefficient(from:to), u(self%master(from:to)))
+         u(self%dependent(c)) = dot_product(self%master_coefficient(from:to), &
+               u(self%master(from:to)))
       end do
    end subroutine follow_constraints
 

@@ -64,7 +64,8 @@ contains
       allocate (equations(0))
       do i = 1, size(freedoms)
          if (freedoms(i) == 0) cycle
-         equations = [equations, map%equation(map%first(freedoms(i)):map%first(freedoms(i) + 1) - 1)]
+         equations = [equations, map%equation(map%first(freedoms(i)):map%first(freedoms(i) + 1) &
+               - 1)]
       end do
    end function equations_of
 

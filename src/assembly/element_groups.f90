@@ -2,7 +2,7 @@
 !> geometry, and makes the objects that compute.
 module element_groups
    use kinds, only: wp
-   use errors, only: error_type
+   use errors, only: error_type, new_error, status_internal
    use text, only: to_text
    use places, only: fail_at
    use model, only: model_type
@@ -145,6 +145,9 @@ contains
          call make_dashpot(group, section, b)
       case (element_truss)
          call make_truss(group, section, model%materials(section%material), b, length)
+      case default
+         call new_error(error, status_internal, &
+               'element kind '//to_text(group%kind)//' has no type')
       end select
    end subroutine make_element
 

@@ -70,6 +70,7 @@ contains
       type(step_type), intent(in) :: step
       real(wp), intent(in) :: t
       type(load_type), allocatable :: kept(:)
+      real(wp) :: weight(2)
       logical :: keep
       integer :: i, n
 
@@ -83,7 +84,8 @@ contains
          n = n + 1
          kept(n) = self%loads(i)
          if (kept(n)%has_amplitude .and. kept(n)%amplitude%time /= time_step) cycle
-         kept(n)%pattern = value_of(self%loads(i), t)
+         weight = weights(self%loads(i), t)
+         kept(n)%pattern = weight(1)*self%loads(i)%start + weight(2)*self%loads(i)%pattern
          kept(n)%has_amplitude = .false.
          kept(n)%ramped = .false.
       end do
@@ -128,13 +130,13 @@ contains
       integer, intent(in) :: f
       real(wp), intent(in) :: t
       real(wp), intent(inout) :: earlier(:)
-      real(wp) :: now(size(earlier))
       integer :: i
 
       do i = 1, size(self%loads)
          if (self%loads(i)%kind /= kind_point) cycle
-         now = value_of(self%loads(i), t)
-         earlier(f) = earlier(f) + now(f)
+         earlier(f) = earlier(f) + dot_product(weights(self%loads(i), t), &
+               [self%loads(i)%start(f), self%loads(i)%pattern(f)])
+         self%loads(i)%start(f) = 0.0_wp
          self%loads(i)%pattern(f) = 0.0_wp
       end do
    end subroutine take_over
@@ -219,28 +221,33 @@ contains
       integer, intent(in) :: n_freedoms
       real(wp), intent(in) :: t
       real(wp) :: force(n_freedoms)
+      real(wp) :: weight(2)
       integer :: i
 
       force = 0.0_wp
       do i = 1, size(self%loads)
-         force = force + value_of(self%loads(i), t)
+         weight = weights(self%loads(i), t)
+         if (abs(weight(1)) > 0.0_wp) force = force + weight(1)*self%loads(i)%start
+         force = force + weight(2)*self%loads(i)%pattern
       end do
    end function load_at
 
-   pure function value_of(load, t) result(force)
+   !> Shares of a load's start and pattern in its size at time t.
+   pure function weights(load, t) result(weight)
       type(load_type), intent(in) :: load
       real(wp), intent(in) :: t
-      real(wp) :: force(size(load%pattern))
+      real(wp) :: weight(2)
       real(wp) :: local_time
 
-      force = load%pattern
+      weight = [0.0_wp, 1.0_wp]
       if (load%ramped) then
-         force = load%start + (load%pattern - load%start)*(t - load%t_start)/load%duration
+         weight(2) = (t - load%t_start)/load%duration
+         weight(1) = 1.0_wp - weight(2)
       else if (load%has_amplitude) then
          local_time = t
          if (load%amplitude%time == time_step) local_time = t - load%t_start
-         force = amplitude_at(load%amplitude, local_time)*load%pattern
+         weight(2) = amplitude_at(load%amplitude, local_time)
       end if
-   end function value_of
+   end function weights
 
 end module external_load

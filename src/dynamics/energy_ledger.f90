@@ -1,4 +1,5 @@
-!> Where the energy goes: kinetic and strain energy, damping, impacts and contact, work from outside;
+!> Where the energy goes: kinetic and strain energy, damping, impacts and contact, work from
+!> outside;
 !> what is left over is the balance error of the time integration.
 module energy_ledger
    use kinds, only: wp
@@ -75,7 +76,8 @@ contains
       moved = merge(to%d - from%d, 0.0_wp, system%structure%map%prescribed)
       if (.not. any(abs(moved) > 0.0_wp)) return
       self%external_work = self%external_work + dot_product(moved, &
-            reaction_forces(system, from, contact_from) + reaction_forces(system, to, contact_to))/2.0_wp
+            reaction_forces(system, from, contact_from) + reaction_forces(system, to, &
+            contact_to))/2.0_wp
    end subroutine record_reactions
 
    !> An impact: what it takes from the bodies and what a moving wall gives.

@@ -21,8 +21,10 @@ module constrained_step
 contains
 
    !> M a + C v + S(d) = f + Gt lambda over a step dt, for the touching rows
-   !> 0 <= lambda, W lambda + G a_free >= 0 (or, given `held`, W lambda + G a_free = 0 on its rows), with
-   !> W = G A^-1 Gt, A = M + gamma h C + beta h^2 K; overlapping rows get their fictitious force where
+   !> 0 <= lambda, W lambda + G a_free >= 0 (or, given `held`, W lambda + G a_free = 0 on its
+   !> rows), with
+   !> W = G A^-1 Gt, A = M + gamma h C + beta h^2 K; overlapping rows get their fictitious force
+   !> where
    !> the scene has that method. Solved for accelerations: nothing is divided by beta h^2. Errors:
    !> singular matrix, no convergence of nonlinear elements.
    subroutine advance_smoothly(scene, from, dt, beta, to, error, held)
@@ -118,7 +120,8 @@ contains
 
       call new_error(error, status_numerical, 'no convergence in ' &
             //to_text(scene%system%max_iterations)//' iterations at time '//to_text(t) &
-            //new_line('a')//'  cure: a smaller increment, or tables without sharp drops of stiffness')
+            //new_line('a') &
+            //'  cure: a smaller increment, or tables without sharp drops of stiffness')
    end subroutine not_converged
 
    subroutine dependent_rows(scene, t, error)
@@ -128,7 +131,7 @@ contains
 
       call new_error(error, status_numerical, 'contact conditions depend on each other at time ' &
             //to_text(t)//' ('//to_text(scene%rows%n)//' rows in all)'//new_line('a') &
-            //'  cure: let no node touch the same wall twice, and none that is fixed along the normal')
+            //'  cure: let no node touch the same wall twice, and none fixed along the normal')
    end subroutine dependent_rows
 
    !> S(d) = f + Gt lambda with 0 <= lambda, g >= 0 on all rows; the motion solution is a

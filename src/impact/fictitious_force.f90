@@ -7,7 +7,8 @@ module fictitious_force
    use constraint_rows, only: row_gaps, row_rates, row_accelerations, rate_size, &
          acceleration_size
    use impact_scene, only: scene_type, contact_motion_type, event_type, record_event, accept_span, &
-         capture_speeds, event_impact, event_capture, event_release, event_contact, rate_tolerance, &
+         capture_speeds, event_impact, event_capture, event_release, event_contact, &
+         rate_tolerance, &
          acceleration_tolerance
    use impact_method, only: impact_method_type
    use impact_jump, only: restart_acceleration, set_rates
@@ -94,7 +95,8 @@ contains
       end do
    end subroutine note_contacts
 
-   !> The jump to e times the approach speed; a rebound below the capture speed stays in contact, held
+   !> The jump to e times the approach speed; a rebound below the capture speed stays in contact,
+   !> held
    !> where it is (moving it to gap zero would add energy).
    subroutine end_contacts(scene, motion, dt, ending, error)
       type(scene_type), intent(inout) :: scene

@@ -37,8 +37,8 @@ contains
       do i = 2, size(list%rows)
          if (agree(first, model%interactions(list%rows(i)%interaction))) cycle
          call fail_at(error, model%source, model%interactions(list%rows(i)%interaction)%place, &
-               'the interactions of one run differ in METHOD, BETA, MAX EVENTS, RETURN or SOLUTION', &
-               'give them the same; RESTITUTION and CAPTURE may differ')
+               'the interactions differ in METHOD, BETA, MAX EVENTS, RETURN or SOLUTION', &
+               'one run has one of each; RESTITUTION and CAPTURE may differ')
          return
       end do
       settings%beta_choice = first%beta_choice

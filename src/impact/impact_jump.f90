@@ -7,7 +7,8 @@ module impact_jump
    use equation_of_motion, only: prepare_mass, solve_mass, force_balance
    use structure, only: inertia_force
    use energy_ledger, only: record_impact
-   use constraint_rows, only: row_gaps, row_rates, row_accelerations, row_vector, row_forces, wall_rates
+   use constraint_rows, only: row_gaps, row_rates, row_accelerations, row_vector, row_forces, &
+         wall_rates
    use impact_scene, only: scene_type, contact_motion_type, event_type, record_event, &
          capture_speeds, event_impact, event_capture, event_limit
    implicit none
@@ -19,7 +20,7 @@ module impact_jump
    !> What happens at one instant.
    type :: impact_type
       logical, allocatable :: new(:)         !! (n_rows) rows that hit
-      logical, allocatable :: forced(:)      !! (n_rows) of these, rows at rest and pressed: captured
+      logical, allocatable :: forced(:)      !! (n_rows) of these, captured: pressed at rest
       logical :: plastic = .false.           !! every new row is captured: too many events
       real(wp) :: dt = 0.0_wp                !! the whole step, for the capture speed
       real(wp) :: beta = 0.0_wp              !! for the record
@@ -77,7 +78,8 @@ contains
       logical, intent(out) :: held(:)            !! (n_rows) rows that touch afterwards
       type(error_type), allocatable, intent(out) :: error
       real(wp), dimension(scene%rows%n) :: e, after, limits
-      real(wp) :: v_before(size(motion%motion%v)), q(size(compliance%rows)), p(size(compliance%rows))
+      real(wp) :: v_before(size(motion%motion%v)), q(size(compliance%rows)), &
+            p(size(compliance%rows))
       logical :: slow(scene%rows%n), solved
 
       v_before = motion%motion%v
@@ -108,7 +110,8 @@ contains
    subroutine dependent_impulses(error)
       type(error_type), allocatable, intent(out) :: error
 
-      call new_error(error, status_numerical, 'an impact has no answer: a contact row has no mass '// &
+      call new_error(error, status_numerical, &
+            'an impact has no answer: a contact row has no mass '// &
             'behind it, or rows depend on each other'//new_line('a')// &
             '  cure: give every contact node a mass, and let none touch the same wall twice')
    end subroutine dependent_impulses
@@ -129,14 +132,16 @@ contains
       call prepare_mass(scene%system, error)
       if (allocated(error)) return
       do j = 1, size(compliance%rows)
-         compliance%x(:, j) = solve_mass(scene%system, row_vector(scene%rows, compliance%rows(j), n))
+         compliance%x(:, j) = solve_mass(scene%system, row_vector(scene%rows, &
+               compliance%rows(j), n))
          products = row_accelerations(scene%rows, compliance%x(:, j))
          compliance%w(:, j) = products(compliance%rows)
       end do
       compliance%w = (compliance%w + transpose(compliance%w))/2.0_wp
    end subroutine mass_compliance
 
-   !> The acceleration of equilibrium with the touching rows held bilaterally: a force of either sign.
+   !> The acceleration of equilibrium with the touching rows held bilaterally: a force of either
+   !> sign.
    !> (With its sign enforced here, energy would be pumped in.)
    subroutine restart_acceleration(scene, motion, error)
       type(scene_type), intent(inout) :: scene
@@ -232,7 +237,8 @@ contains
       scene%impulse = scene%impulse + impulse
    end subroutine set_rates
 
-   !> Energy: the bodies gain p . (r- + r+)/2 less what the wall's own motion does; with the gap rate
+   !> Energy: the bodies gain p . (r- + r+)/2 less what the wall's own motion does; with the gap
+   !> rate
    !> r = G v + c', the wall gives -p . c'.
    subroutine book_impulse(scene, motion, impulse, before, after)
       type(scene_type), intent(inout) :: scene

@@ -19,6 +19,7 @@ module impact_method
       !> Contact and acceleration at the start of a dynamic step from its d and v.
       subroutine start_interface(self, scene, motion, dt, error)
          import :: impact_method_type, scene_type, contact_motion_type, error_type, wp
+         implicit none
          class(impact_method_type), intent(in) :: self
          type(scene_type), intent(inout) :: scene
          type(contact_motion_type), intent(inout) :: motion
@@ -29,6 +30,7 @@ module impact_method
       !> Takes the motion from its time over dt.
       subroutine advance_interface(self, scene, motion, dt, error)
          import :: impact_method_type, scene_type, contact_motion_type, error_type, wp
+         implicit none
          class(impact_method_type), intent(in) :: self
          type(scene_type), intent(inout) :: scene
          type(contact_motion_type), intent(inout) :: motion

@@ -118,7 +118,8 @@ contains
             + (to%motion%t - from%motion%t)*(from%lambda + to%lambda)/2.0_wp
    end subroutine accept_span
 
-   !> Speed below which a rebound is captured, by rows: the deck's, or such that all the bounces that
+   !> Speed below which a rebound is captured, by rows: the deck's, or such that all the bounces
+   !> that
    !> would follow, 2 u / (closing (1 - e)) long together, fit into one step.
    pure function capture_speeds(scene, a, dt) result(limits)
       type(scene_type), intent(in) :: scene

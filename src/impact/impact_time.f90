@@ -21,7 +21,8 @@ module impact_time
       real(wp) :: rate_limit = 0.0_wp        !! smaller gap rates are round-off
    end type span_type
 
-   !> Rows that are hit, each with a bracket: gap positive at `low`, negative at `high`; both zero for
+   !> Rows that are hit, each with a bracket: gap positive at `low`, negative at `high`; both zero
+   !> for
    !> a row that is hit at once.
    type :: hits_type
       integer :: n = 0
@@ -51,8 +52,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       real(wp), dimension(scene%rows%n) :: g0, r0, a0, g1
       type(path_type) :: path
-      real(wp) :: low, high
-      logical :: hit
+      real(wp) :: bracket(2)
       integer :: i
 
       allocate (hits%row(scene%rows%n), hits%low(scene%rows%n), hits%high(scene%rows%n))
@@ -63,48 +63,44 @@ contains
       do i = 1, scene%rows%n
          if (from%touching(i)) cycle
          path = new_path(span%dt, g0(i), r0(i), a0(i), g1(i))
-         call bracket_hit(scene, from, span, i, path, low, high, hit, error)
+         call bracket_hit(scene, from, span, i, path, bracket, error)
          if (allocated(error)) return
-         if (.not. hit) cycle
+         if (bracket(2) < 0.0_wp) cycle
          hits%n = hits%n + 1
          hits%row(hits%n) = i
-         hits%low(hits%n) = low
-         hits%high(hits%n) = high
+         hits%low(hits%n) = bracket(1)
+         hits%high(hits%n) = bracket(2)
       end do
    end subroutine find_hits
 
-   !> Whether a row is hit, and between which times. A row that starts slightly overlapped and opens
-   !> is not.
-   subroutine bracket_hit(scene, from, span, row, path, low, high, hit, error)
+   !> Between which times a row is hit, negative if it is not. A row that starts slightly overlapped
+   !> and opens is not.
+   subroutine bracket_hit(scene, from, span, row, path, bracket, error)
       type(scene_type), intent(inout) :: scene
       type(contact_motion_type), intent(in) :: from
       type(span_type), intent(in) :: span
       integer, intent(in) :: row
       type(path_type), intent(in) :: path
-      real(wp), intent(out) :: low, high
-      logical, intent(out) :: hit
+      real(wp), intent(out) :: bracket(2)
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: threshold, rise
+      real(wp) :: threshold, high, rise
 
-      low = 0.0_wp
+      bracket = -1.0_wp
       high = span%dt
       threshold = min(path%g0, 0.0_wp) - span%gap_limit
-      hit = path_value(path, span%dt) < threshold
-      if (.not. hit) then
+      if (path_value(path, high) >= threshold) then
          high = find_dip(path)
          if (high < 0.0_wp) return
          if (path_value(path, high) >= threshold) return
-         hit = resolved_gap(scene, from, span, high, row, error) < threshold
-         if (allocated(error) .or. .not. hit) return
+         if (resolved_gap(scene, from, span, high, row, error) >= threshold) return
+         if (allocated(error)) return
       end if
+      bracket = [0.0_wp, high]
       if (path%g0 > span%gap_limit) return
       rise = find_rise(path)
-      if (path%r0 > span%rate_limit .and. rise > 0.0_wp .and. rise < high) then
-         low = rise
-         if (path_value(path, rise) > span%gap_limit) return
-      end if
-      low = 0.0_wp
-      high = 0.0_wp
+      bracket = 0.0_wp
+      if (path%r0 <= span%rate_limit .or. rise < 0.0_wp .or. rise >= high) return
+      if (path_value(path, rise) > span%gap_limit) bracket = [rise, high]
    end subroutine bracket_hit
 
    !> Gap of a row at the end of a step of length x.
@@ -126,7 +122,8 @@ contains
       gap = gaps(row)
    end function resolved_gap
 
-   !> The first time at which the smallest gap of the hit rows vanishes: regula falsi with the weights
+   !> The first time at which the smallest gap of the hit rows vanishes: regula falsi with the
+   !> weights
    !> of Anderson and Bjorck, and a bisection whenever three trials have not shrunk the bracket to a
    !> quarter. The set of touching rows is frozen, so the path is continuous. `at` is the motion
    !> there, just before the jump.

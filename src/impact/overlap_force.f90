@@ -153,7 +153,8 @@ contains
 
       call new_error(error, status_numerical, &
             'the contact rows have no compliance of their own: rows depend on each other'// &
-            new_line('a')//'  cure: let no node touch the same wall twice, and none that is fixed'// &
+            new_line('a') &
+            //'  cure: let no node touch the same wall twice, and none that is fixed'// &
             ' along the normal; beta must not be zero')
    end subroutine no_compliance
 

@@ -104,7 +104,8 @@ contains
       motion%motion%t = progress%t_end
    end subroutine advance
 
-   !> Takes a span of smooth motion. Rows that opened in it touch no more; the others are put back on
+   !> Takes a span of smooth motion. Rows that opened in it touch no more; the others are put back
+   !> on
    !> the wall where round-off or the wall's motion has moved them off.
    subroutine take_span(scene, motion, next, dt, span, progress, error)
       type(scene_type), intent(inout) :: scene
@@ -204,7 +205,8 @@ contains
       end where
    end subroutine release_times
 
-   !> Lets rows go. The acceleration stays as it is, contact force included: restarted without it, the
+   !> Lets rows go. The acceleration stays as it is, contact force included: restarted without it,
+   !> the
    !> row would be thrown back.
    subroutine release_rows(scene, motion, release, progress)
       type(scene_type), intent(inout) :: scene
@@ -279,9 +281,8 @@ contains
                rates(row) >= -impact%rate_limit
       end do
       if (.not. any(impact%new) .and. .not. any(impact%forced)) then
-         do i = 1, hits%n
-            impact%forced(hits%row(i)) = gaps(hits%row(i)) <= span%gap_limit
-         end do
+         ! never go on with nothing: the row that is nearest then
+         impact%forced(hits%row(minloc(gaps(hits%row(:hits%n)), dim=1))) = .true.
       end if
       impact%new = impact%new .or. impact%forced
    end subroutine choose_rows

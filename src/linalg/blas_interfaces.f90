@@ -9,6 +9,7 @@ module blas_interfaces
    interface
       pure function ddot(n, x, incx, y, incy) result(dot)
          import :: wp
+         implicit none
          integer, intent(in) :: n, incx, incy
          real(wp), intent(in) :: x(*), y(*)
          real(wp) :: dot
@@ -16,6 +17,7 @@ module blas_interfaces
 
       pure subroutine daxpy(n, alpha, x, incx, y, incy)
          import :: wp
+         implicit none
          integer, intent(in) :: n, incx, incy
          real(wp), intent(in) :: alpha, x(*)
          real(wp), intent(inout) :: y(*)
@@ -23,6 +25,7 @@ module blas_interfaces
 
       pure subroutine dposv(uplo, n, nrhs, a, lda, b, ldb, info)
          import :: wp
+         implicit none
          character(len=1), intent(in) :: uplo
          integer, intent(in) :: n, nrhs, lda, ldb
          real(wp), intent(inout) :: a(lda, *), b(ldb, *)
@@ -31,6 +34,7 @@ module blas_interfaces
 
       pure subroutine dsygv(itype, jobz, uplo, n, a, lda, b, ldb, w, work, lwork, info)
          import :: wp
+         implicit none
          integer, intent(in) :: itype, n, lda, ldb, lwork
          character(len=1), intent(in) :: jobz, uplo
          real(wp), intent(inout) :: a(lda, *), b(ldb, *)

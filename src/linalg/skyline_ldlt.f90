@@ -55,7 +55,8 @@ contains
          if (common >= i) cycle
          base_i = matrix%last(i) - i
          matrix%values(base_j + i) = matrix%values(base_j + i) &
-               - ddot(i - common, matrix%values(base_i + common), 1, matrix%values(base_j + common), 1)
+               - ddot(i - common, matrix%values(base_i + common), 1, matrix%values(base_j &
+               + common), 1)
       end do
       do i = top, j - 1
          u = matrix%values(base_j + i)

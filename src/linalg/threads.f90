@@ -10,6 +10,7 @@ module threads
    abstract interface
       subroutine setter_interface(n) bind(c)
          import :: c_int
+         implicit none
          integer(c_int), value :: n
       end subroutine setter_interface
    end interface
@@ -17,6 +18,7 @@ module threads
    interface
       function find_symbol(handle, name) bind(c, name='dlsym') result(address)
          import :: c_ptr, c_funptr, c_char
+         implicit none
          type(c_ptr), value :: handle
          character(kind=c_char), intent(in) :: name(*)
          type(c_funptr) :: address

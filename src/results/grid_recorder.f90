@@ -29,10 +29,14 @@ module grid_recorder
    character(len=4), parameter :: names(n_quantities) = &
          ['U   ', 'V   ', 'A   ', 'RF  ', 'S   ', 'E   ', 'ENER', 'CF  ', 'CDIS']
    character(len=42), parameter :: meanings(n_quantities) = [ &
-         'displacement                              ', 'velocity                                  ', &
-         'acceleration                              ', 'reaction force                            ', &
-         'stress 11 22 33 12 23 13, 11 axial        ', 'strain 11 22 33 12 23 13, 11 axial        ', &
-         'strain energy density                     ', 'contact force                             ', &
+         'displacement                              ', &
+         'velocity                                  ', &
+         'acceleration                              ', &
+         'reaction force                            ', &
+         'stress 11 22 33 12 23 13, 11 axial        ', &
+         'strain 11 22 33 12 23 13, 11 axial        ', &
+         'strain energy density                     ', &
+         'contact force                             ', &
          'gap of contact nodes, 0 at others         ']
 
 contains
@@ -69,13 +73,17 @@ contains
 
       select case (q)
       case (quantity_s, quantity_e)
-         call self%grid%add_cell_field(file, trim(names(q)), 6, trim(meanings(q)), self%field(q), error)
+         call self%grid%add_cell_field(file, trim(names(q)), 6, trim(meanings(q)), &
+               self%field(q), error)
       case (quantity_ener)
-         call self%grid%add_cell_field(file, trim(names(q)), 1, trim(meanings(q)), self%field(q), error)
+         call self%grid%add_cell_field(file, trim(names(q)), 1, trim(meanings(q)), &
+               self%field(q), error)
       case (quantity_cdis)
-         call self%grid%add_point_field(file, trim(names(q)), 1, trim(meanings(q)), self%field(q), error)
+         call self%grid%add_point_field(file, trim(names(q)), 1, trim(meanings(q)), &
+               self%field(q), error)
       case default
-         call self%grid%add_point_field(file, trim(names(q)), 3, trim(meanings(q)), self%field(q), error)
+         call self%grid%add_point_field(file, trim(names(q)), 3, trim(meanings(q)), &
+               self%field(q), error)
       end select
    end subroutine add_field
 
@@ -152,7 +160,8 @@ contains
       end do
       if (self%field(quantity_s) > 0) call self%grid%set_values(self%field(quantity_s), s)
       if (self%field(quantity_e) > 0) call self%grid%set_values(self%field(quantity_e), strain)
-      if (self%field(quantity_ener) > 0) call self%grid%set_values(self%field(quantity_ener), energy)
+      if (self%field(quantity_ener) > 0) call self%grid%set_values(self%field(quantity_ener), &
+            energy)
    end subroutine set_elements
 
 end module grid_recorder

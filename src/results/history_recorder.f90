@@ -41,7 +41,8 @@ module history_recorder
 
 contains
 
-   !> Makes the group and its columns: those of existing freedoms, of elements with stress, of pairs.
+   !> Makes the group and its columns: those of existing freedoms, of elements with stress, of
+   !> pairs.
    subroutine new_history(self, file, model, scene, list, plan, error)
       type(history_type), intent(out) :: self
       type(hdf5_file_type), intent(in) :: file
@@ -52,7 +53,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       allocate (self%columns(64))
-      call self%table%create(file, '/history', 'what the deck asks to print, a row an increment', error)
+      call self%table%create(file, '/history', &
+            'what the deck asks to print, a row an increment', error)
       if (allocated(error)) return
       call self%table%add_column(file, 'time', 'total time', error)
       if (allocated(error)) return
@@ -82,7 +84,8 @@ contains
                f = scene%system%structure%map%freedom(i, node)
                if (f == 0) cycle
                call add(self, file, column_type(q, f, 0, i), 'node_'//id//'/'//trim(names(q)) &
-                     //to_text(i), trim(meanings(q))//' of node '//id//' in direction '//to_text(i), error)
+                     //to_text(i), trim(meanings(q))//' of node '//id//' in direction ' &
+                     //to_text(i), error)
                if (allocated(error)) return
             end do
          end do
@@ -110,7 +113,8 @@ contains
                id = to_text(model%elements%id(member))
                do q = quantity_s, quantity_ener
                   if (.not. plan%element_print(q, member)) cycle
-                  call add(self, file, column_type(q, e, g, q - quantity_s + 1), 'element_'//id//'/' &
+                  call add(self, file, column_type(q, e, g, q - quantity_s + 1), 'element_'//id &
+                        //'/' &
                         //trim(names(q - quantity_s + 1)), trim(meanings(q - quantity_s + 1)) &
                         //' of element '//id, error)
                   if (allocated(error)) return
@@ -193,7 +197,6 @@ contains
       real(wp) :: value
       real(wp) :: three(3)
 
-      value = 0.0_wp
       select case (column%quantity)
       case (quantity_u)
          value = snapshot%u(column%item)
@@ -211,7 +214,7 @@ contains
                mask=list%rows%pair == column%item)
       case (impulse_column)
          value = sum(snapshot%impulse, mask=list%rows%pair == column%item)
-      case (quantity_cdis)
+      case default
          value = minval(snapshot%gap, mask=list%rows%pair == column%item)
       end select
    end function value_of

@@ -1,9 +1,8 @@
 !> Which results a deck asks for, over all its steps together.
 module output_plan
    use model, only: model_type
-   use steps, only: request_type, n_quantities, request_node_print, request_node_file, &
-         request_element_print, request_element_file, request_contact_print, request_contact_file, &
-         request_energy_print
+   use steps, only: request_type, n_quantities, request_node_print, request_element_print, &
+         request_contact_print, request_energy_print
    implicit none
    private
 
@@ -66,7 +65,7 @@ contains
          self%contact_print = self%contact_print .or. request%wanted
       case (request_energy_print)
          self%energy = .true.
-      case (request_node_file, request_element_file, request_contact_file)
+      case default
          self%file = self%file .or. request%wanted
       end select
    end subroutine add_request

@@ -83,7 +83,8 @@ contains
       call self%energy%create(self%file, '/energy', 'energies and works since the start', error)
       if (allocated(error)) return
       do i = 1, size(energy_columns)
-         call self%energy%add_column(self%file, trim(energy_columns(i)), trim(energy_meanings(i)), error)
+         call self%energy%add_column(self%file, trim(energy_columns(i)), &
+               trim(energy_meanings(i)), error)
          if (allocated(error)) return
       end do
    end subroutine new_energy
@@ -112,7 +113,8 @@ contains
       call self%events%add_text_column(self%file, 'kind', text_length, &
             'impact, capture, release, contact (first overlap) or limit (of events)', error)
       if (allocated(error)) return
-      call self%events%add_text_column(self%file, 'pair', text_length, 'name of the contact pair', error)
+      call self%events%add_text_column(self%file, 'pair', text_length, &
+            'name of the contact pair', error)
    end subroutine new_events
 
    !> The deck's text and the rigid planes.
@@ -224,7 +226,8 @@ contains
 
       associate (ledger => scene%ledger)
          call self%energy%append_row(self%file, [t, ledger%kinetic, ledger%strain, ledger%damping, &
-               ledger%plastic, ledger%friction, ledger%impact_loss, ledger%external_work, ledger%total, &
+               ledger%plastic, ledger%friction, ledger%impact_loss, ledger%external_work, &
+               ledger%total, &
                ledger%balance_error], error)
       end associate
    end subroutine record_energy

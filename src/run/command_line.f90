@@ -34,10 +34,12 @@ contains
       character(len=1), parameter :: nl = new_line('a')
 
       text = 'carom '//version_text//': structural dynamics with impact'//nl//nl// &
-            'usage: carom run DECK [-o OUT.h5] [--define NAME=VALUE]... [--threads N] [--quiet]'//nl// &
+            'usage: carom run DECK [-o OUT.h5] [--define NAME=VALUE]... [--threads N] [--quiet]' &
+            //nl// &
             '       carom check DECK [--define NAME=VALUE]...'//nl// &
             '       carom --version | --help'//nl//nl// &
-            '  run      computes the deck; writes OUT.h5, OUT.log and OUT.sta (default: the deck''s name)'//nl// &
+            '  run      computes the deck; writes OUT.h5, OUT.log and OUT.sta'//nl// &
+            '           (default: beside the deck, with its name)'//nl// &
             '  check    reads the deck, builds the model and prints what a run would do'//nl// &
             '  --define overrides a *PARAMETER of the deck'//nl// &
             '  --threads threads of the linear algebra library'//nl// &
@@ -125,7 +127,7 @@ contains
          definition%name = value(:split - 1)
          definition%value = value(split + 1:)
          command%definitions = [command%definitions, definition]
-      case ('--threads')
+      case default
          if (verify(value, '0123456789') == 0) then
             read (value, *, iostat=status) command%threads
             if (status == 0 .and. command%threads > 0) return

@@ -22,6 +22,7 @@ module progress
    interface
       function isatty(descriptor) bind(c, name='isatty') result(answer)
          import :: c_int
+         implicit none
          integer(c_int), value :: descriptor
          integer(c_int) :: answer
       end function isatty

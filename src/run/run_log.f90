@@ -41,7 +41,8 @@ contains
       integer :: status
 
       open (newunit=unit, file=path, status='replace', action='write', iostat=status, iomsg=message)
-      if (status /= 0) call new_error(error, status_file, 'cannot write '//path//': '//trim(message))
+      if (status /= 0) call new_error(error, status_file, 'cannot write '//path//': ' &
+            //trim(message))
    end subroutine open_text
 
    !> One line (or several, parted by new lines) for the log and the terminal.

@@ -97,7 +97,8 @@ contains
       if (simulation%scene%rows%n == 0) return
       associate (settings => simulation%scene%settings)
          if (settings%fictitious) then
-            line = '  impact: fictitious force, return parameter '//to_text(settings%return_parameter)
+            line = '  impact: fictitious force, return parameter ' &
+                  //to_text(settings%return_parameter)
             if (settings%direct) line = line//', fixed point solved directly'
          else
             line = '  impact: transformation, beta of the impact step ' &
@@ -132,9 +133,11 @@ contains
          if (simulation%scene%rows%n > 0) call say(log, 'events: ' &
                //to_text(n(event_impact))//' impacts, '//to_text(n(event_contact))//' overlaps, ' &
                //to_text(n(event_capture))//' captures, '//to_text(n(event_release))//' releases')
-         if (n(event_limit) > 0) call say(log, 'warning: MAX EVENTS was reached; rows captured by it: ' &
+         if (n(event_limit) > 0) call say(log, &
+               'warning: MAX EVENTS was reached; rows captured by it: ' &
                //to_text(n(event_limit)))
-         call say(log, 'energy: kinetic '//to_text(ledger%kinetic)//', strain '//to_text(ledger%strain) &
+         call say(log, 'energy: kinetic '//to_text(ledger%kinetic)//', strain ' &
+               //to_text(ledger%strain) &
                //', damping '//to_text(ledger%damping)//', impacts '//to_text(ledger%impact_loss) &
                //', external work '//to_text(ledger%external_work)//', balance error ' &
                //to_text(ledger%balance_error, 3))

@@ -3,7 +3,7 @@
 module scene_setup
    use kinds, only: wp, int64
    use errors, only: error_type
-   use text, only: to_text
+   use text, only: to_text, plural
    use places, only: fail_at, note_at, place_type, source_line_type
    use model, only: model_type
    use mesh, only: scheme_implicit, scheme_explicit
@@ -105,16 +105,17 @@ contains
    subroutine note_idle_boundaries(self, boundaries)
       type(simulation_type), intent(inout) :: self
       type(boundary_type), intent(in) :: boundaries(:)
-      integer :: i, noted_line
+      integer :: i, first, n
 
-      noted_line = 0
-      do i = 1, size(boundaries)
-         if (self%scene%system%structure%map%freedom(boundaries(i)%dof, boundaries(i)%node) > 0) cycle
-         if (boundaries(i)%place%line == noted_line) cycle
-         noted_line = boundaries(i)%place%line
-         call add_remark(self, note_at(self%model%source, boundaries(i)%place, &
-               'holds directions in which nothing can move; accepted'))
+      n = 0
+      do i = size(boundaries), 1, -1
+         if (self%scene%system%structure%map%freedom(boundaries(i)%dof, &
+               boundaries(i)%node) > 0) cycle
+         n = n + 1
+         first = i
       end do
+      if (n > 0) call add_remark(self, note_at(self%model%source, boundaries(first)%place, &
+            plural(n, 'condition')//' from here on where nothing can move; accepted'))
    end subroutine note_idle_boundaries
 
    subroutine check_values(self, values, what, error)
@@ -128,7 +129,8 @@ contains
          if (self%scene%system%structure%map%freedom(values(i)%dof, values(i)%node) > 0) cycle
          if (.not. abs(values(i)%value) > 0.0_wp) cycle
          call fail_at(error, self%model%source, values(i)%place, what//' on node ' &
-               //to_text(self%model%nodes%id(values(i)%node))//', freedom '//to_text(values(i)%dof) &
+               //to_text(self%model%nodes%id(values(i)%node))//', freedom ' &
+               //to_text(values(i)%dof) &
                //', which does not exist: no element there can move that way', &
                'load a direction that an element or a mass has')
          return
@@ -150,7 +152,8 @@ contains
       if (self%scene%rows%n == 0) return
       gaps = row_gaps(self%scene%rows, self%motion%motion)
       i = minloc(gaps, dim=1)
-      if (gaps(i) >= -merge_gap_tolerance*gap_size(self%scene%rows, self%motion%motion, 0.0_wp)) return
+      if (gaps(i) >= -merge_gap_tolerance*gap_size(self%scene%rows, self%motion%motion, &
+            0.0_wp)) return
       call fail_at(error, self%model%source, self%contact%rows(i)%place, 'node ' &
             //to_text(self%scene%rows%node_id(i))//' overlaps its contact partner by ' &
             //to_text(-gaps(i))//' at the start', &
@@ -189,12 +192,16 @@ contains
          if (step%explicit) system%structure%groups%scheme = scheme_explicit
          call begin_conditions(self, i_step, t)
          call number_equations(system%structure%map, &
-               prescribed_freedoms(system%motions, system%structure%map%n_freedoms), self%model%equations)
+               prescribed_freedoms(system%motions, system%structure%map%n_freedoms), &
+               self%model%equations)
          call find_profile(system%structure, system%profile)
          call system%matrices%forget()
          call find_massless(system)
          call begin_loads(system%loads, system%structure, self%model, i_step, t)
          if (system%static) return
+         ! the deck's initial velocities wait for the first dynamic step
+         if (all(self%model%steps(:i_step - 1)%procedure == procedure_static)) call put_values( &
+               system%structure, self%model%initial_velocities, self%motion%motion%v)
          call put_values(system%structure, step%initial_velocities, self%motion%motion%v)
          call impose(system, self%motion%motion)
          call check_critical(self, step, error)
@@ -211,7 +218,8 @@ contains
          if (step%max_increments == 0) return
          if (count_increments(step) <= step%max_increments) return
          call fail_at(error, self%model%source, step%place, 'the step needs ' &
-               //to_text(count_increments(step))//' increments, INC allows '//to_text(step%max_increments), &
+               //to_text(count_increments(step))//' increments, INC allows ' &
+               //to_text(step%max_increments), &
                'raise INC, or take larger increments')
       end associate
    end subroutine check_increments
@@ -306,7 +314,8 @@ contains
                   'take a step of at most '//to_text(0.9_wp*limit%step) &
                   //' (0.9 of the critical one), or make the element implicit with *ELEMENT GROUP')
          else if (step%dt > 0.95_wp*limit%step .and. self%scene%rows%n > 0) then
-            call add_remark(self, note_at(self%model%source, step%time_place, 'the step is within ' &
+            call add_remark(self, note_at(self%model%source, step%time_place, &
+                  'the step is within ' &
                   //'5 % of the critical step '//to_text(limit%step) &
                   //': contact then feeds the highest explicit mode, take 0.9 of it or less'))
          end if

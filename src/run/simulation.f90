@@ -16,7 +16,8 @@ module simulation
    use command_line, only: command_type, version_text
    use run_log, only: log_type, open_log, close_log, say, write_status
    use progress, only: progress_type, start_progress, show_progress, end_progress
-   use scene_setup, only: simulation_type, build_scene, begin_step, initial_motion, count_increments, &
+   use scene_setup, only: simulation_type, build_scene, begin_step, initial_motion, &
+         count_increments, &
          last_increment, count_events
    use run_report, only: report_model, report_step, report_notes, report_summary
    implicit none
@@ -67,7 +68,8 @@ contains
          call begin_step(simulation, i, error)
          if (allocated(error)) return
          if (aloud) call report_step(simulation, i, log)
-         simulation%motion%motion%t = simulation%motion%motion%t + simulation%model%steps(i)%duration
+         simulation%motion%motion%t = simulation%motion%motion%t &
+               + simulation%model%steps(i)%duration
       end do
       if (aloud) call report_notes(simulation, log)
    end subroutine prepare
@@ -167,7 +169,8 @@ contains
             if (allocated(error)) return
             ! counted, not summed up: no drift of time over many increments
             simulation%motion%motion%t = t_end
-            call finish_increment(simulation, i_step, increment, increment == n_increments, output, &
+            call finish_increment(simulation, i_step, increment, increment == n_increments, &
+                  output, &
                   error)
             if (allocated(error)) return
          end do
@@ -196,7 +199,8 @@ contains
             scene%ledger%external_work = scene%ledger%external_work + scene%ledger%total - before
          end if
          if (starts_anew(simulation, i_step)) then
-            call simulation%method%start(scene, simulation%motion, simulation%model%steps(i_step)%dt, &
+            call simulation%method%start(scene, simulation%motion, &
+                  simulation%model%steps(i_step)%dt, &
                   error)
             if (allocated(error)) return
          end if
@@ -222,7 +226,8 @@ contains
       if (simulation%scene%system%static) return
       anew = i_step == 1
       if (anew) return
-      anew = simulation%model%steps(i_step - 1)%procedure /= simulation%model%steps(i_step)%procedure
+      anew = simulation%model%steps(i_step &
+            - 1)%procedure /= simulation%model%steps(i_step)%procedure
       anew = anew .or. size(simulation%model%steps(i_step)%initial_velocities) > 0
    end function starts_anew
 
@@ -282,9 +287,11 @@ contains
 
       if (all(abs(motion%d) <= huge(1.0_wp)) .and. all(abs(motion%v) <= huge(1.0_wp)) .and. &
             all(abs(motion%a) <= huge(1.0_wp))) return
-      call new_error(error, status_numerical, 'the motion is not finite (NaN or infinite) at time ' &
+      call new_error(error, status_numerical, &
+            'the motion is not finite (NaN or infinite) at time ' &
             //to_text(motion%t)//'; the last good increment is at '//to_text(motion%t - dt) &
-            //new_line('a')//'  cure: a smaller step, and a look at the loads and the energy before it')
+            //new_line('a') &
+            //'  cure: a smaller step, and a look at the loads and the energy before it')
    end subroutine check_finite
 
    !> The deck's limit on the balance error, a part of the largest energy met.
