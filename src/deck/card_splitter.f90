@@ -291,7 +291,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(card_type) :: card
       character(len=:), allocatable :: path, trouble
-      integer :: i
+      integer :: i, file
 
       card = deck%cards(deck%n_cards)
       deck%n_cards = deck%n_cards - 1
@@ -317,7 +317,8 @@ contains
                trouble, cure='the path is relative to the file that includes')
          return
       end if
-      call split_file(deck, source, source%n_files, progress, error)
+      file = source%n_files      ! a copy: n_files grows with every include in that file
+      call split_file(deck, source, file, progress, error)
    end subroutine follow_include
 
    !> A file that is being read must not be included again.
