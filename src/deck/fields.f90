@@ -96,7 +96,9 @@ contains
       fields%last(n) = last
       fields%column(n) = first
       fields%width(n) = last - first + 1
-      if (last < first) fields%column(n) = max(1, start - 1)
+      if (last >= first) return
+      fields%column(n) = start - 1
+      if (start == 1) fields%column(n) = finish + 1
    end subroutine add_field
 
    !> Puts values in the place of <names>, field by field.
