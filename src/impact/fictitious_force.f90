@@ -61,9 +61,10 @@ contains
       if (any(ending)) call end_contacts(scene, next, dt, ending, error)
       if (allocated(error)) return
       call release_open(scene, next)
-      ! a row on its way out is free again once it is out, or when it turns back
+      ! a row on its way out is free again once it is out, or when it turns back; one that has just
+      ! ended its contact with e = 0 has no speed yet
       next%leaving = next%leaving .and. row_gaps(scene%rows, next%motion) < 0.0_wp &
-            .and. row_rates(scene%rows, next%motion) > 0.0_wp
+            .and. (ending .or. row_rates(scene%rows, next%motion) > 0.0_wp)
       motion = next
    end subroutine advance
 
