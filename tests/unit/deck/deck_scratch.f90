@@ -39,7 +39,7 @@ contains
       integer :: unit, i
 
       open (newunit=unit, file=path, access='stream', form='unformatted', status='replace', &
-         action='write')
+            action='write')
       do i = 1, len(text)
          if (text(i:i) == '|') then
             write (unit) newline

@@ -10,8 +10,11 @@ module dense_matrices
    public :: as_dense, factors_product, dense_solution, eigenvalues
 
    interface
+      ! LAPACK takes arrays by address, without their size
+      ! allow(C071)
       subroutine dgesv(n, nrhs, a, lda, pivots, b, ldb, info)
          import :: wp
+         implicit none
          integer, intent(in) :: n, nrhs, lda, ldb
          real(wp), intent(inout) :: a(lda, *), b(ldb, *)
          integer, intent(out) :: pivots(*), info
