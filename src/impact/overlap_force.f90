@@ -13,7 +13,7 @@ module overlap_force
    public :: add_overlap_force
 
    !> The iteration has ended when forces change by no more than this part.
-   real(wp), parameter :: force_tolerance = 1.0e-15_wp
+   real(wp), parameter :: force_tolerance = 1.0e-14_wp
 
    !> Overlapping rows with the rows in sustained contact held beside them.
    type :: overlap_type
