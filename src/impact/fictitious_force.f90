@@ -105,7 +105,7 @@ contains
       real(wp), intent(in) :: dt
       logical, intent(in) :: ending(:)
       type(error_type), allocatable, intent(out) :: error
-      real(wp), dimension(scene%rows%n) :: before, target_rate, impulse
+      real(wp), dimension(scene%rows%n) :: before, target_rate, impulse, closing, limits
       logical :: captured(scene%rows%n)
       real(wp) :: rate_limit
       integer :: i
@@ -117,8 +117,11 @@ contains
       if (allocated(error)) return
       call restart_acceleration(scene, motion, error)
       if (allocated(error)) return
-      captured = ending .and. row_accelerations(scene%rows, motion%motion%a) < 0.0_wp .and. &
-            target_rate <= max(capture_speeds(scene, motion%motion%a, dt), rate_limit)
+      closing = max(0.0_wp, -row_accelerations(scene%rows, motion%motion%a))
+      limits = max(capture_speeds(scene, motion%motion%a, dt), rate_limit)
+      ! a rebound that is back within one step would be repeated for ever
+      where (scene%rows%capture < 0.0_wp) limits = max(limits, dt/2.0_wp*closing)
+      captured = ending .and. closing > 0.0_wp .and. target_rate <= limits
       do i = 1, scene%rows%n
          if (.not. ending(i)) cycle
          call record_event(scene, event_type(motion%motion%t, event_impact, i, &
