@@ -1,0 +1,44 @@
+#!/bin/sh
+# Builds carom, runs three cases and draws them into demo/: scripts/demo.sh
+# Installs what is missing (Debian, Ubuntu; as root or with sudo) and needs nothing but a shell.
+set -eu
+root=$(cd "$(dirname "$0")/.." && pwd -P)
+. "$root/scripts/common.sh"
+
+prepare_environment
+install_packages
+make_environment "$root/scripts/requirements.txt"
+configure_and_build "$build" carom -DCMAKE_BUILD_TYPE=Release
+cd "$root"
+mkdir -p demo
+
+compute() {
+   say "running $1"
+   "$build/carom" run "$1" -o "$2" --quiet || fail "carom could not run $1"
+}
+
+draw() {
+   script=$1
+   shift
+   "$python" -B "scripts/$script.py" "$@" || fail "scripts/$script.py could not draw $2"
+}
+
+compute input/sdof/sdof.inp demo/sdof.h5
+draw compare_exact sdof demo/sdof.h5 -o demo/sdof_exact.png
+draw plot_history demo/sdof.h5 -o demo/sdof_history.png --events --columns 'node_1/*'
+draw plot_energy demo/sdof.h5 -o demo/sdof_energy.png
+draw plot_phase demo/sdof.h5 -o demo/sdof_phase.png --wall -0.5
+
+compute input/bar/bar_implicit.inp demo/bar.h5
+draw compare_exact bar demo/bar.h5 -o demo/bar_exact.png
+draw plot_energy demo/bar.h5 -o demo/bar_energy.png
+draw plot_profile demo/bar.h5 -o demo/bar_profile.png
+
+compute input/buildings/buildings.inp demo/buildings.h5
+draw plot_history demo/buildings.h5 -o demo/buildings_history.png
+draw plot_energy demo/buildings.h5 -o demo/buildings_energy.png
+draw plot_profile demo/buildings.h5 -o demo/buildings_profile.png
+draw animate demo/buildings.h5 -o demo/buildings.gif
+
+say "pictures and result files are in $root/demo"
+ls demo/*.png demo/*.gif

@@ -1,0 +1,13 @@
+#!/bin/sh
+# Builds carom with all its tests and runs them: scripts/test.sh [options of ctest]
+# Installs what is missing (Debian, Ubuntu; as root or with sudo) and needs nothing but a shell.
+set -eu
+root=$(cd "$(dirname "$0")/.." && pwd -P)
+. "$root/scripts/common.sh"
+
+prepare_environment
+install_packages
+make_environment "$root/tests/requirements.txt"
+configure_and_build "$build" all -DCMAKE_BUILD_TYPE=Release -DCAROM_TESTS=ON
+say 'running the tests'
+exec ctest --test-dir "$build" -j 2 --output-on-failure "$@"
