@@ -28,7 +28,7 @@ contains
       end do
       do g = 1, size(structure%groups)
          associate (group => structure%groups(g))
-            if (group%scheme /= scheme_implicit .and. group%lumped) cycle
+            if (group%lumped .and. .not. has_implicit_matrix(group)) cycle
             do e = 1, size(group%lm, 2)
                call couple(profile, equations_of(structure%map, group%lm(:, e)))
             end do
@@ -46,13 +46,22 @@ contains
       implicit_equation = .false.
       do g = 1, size(structure%groups)
          associate (group => structure%groups(g))
-            if (group%scheme /= scheme_implicit .or. .not. any(group%element%uses(1))) cycle
+            if (.not. has_implicit_matrix(group)) cycle
             do e = 1, size(group%lm, 2)
                implicit_equation(equations_of(structure%map, group%lm(:, e))) = .true.
             end do
          end associate
       end do
    end subroutine mark_implicit
+
+   !> Whether a group adds stiffness or damping to the effective matrix: it is implicit and more than
+   !> mere mass.
+   pure function has_implicit_matrix(group) result(has)
+      type(group_type), intent(in) :: group
+      logical :: has
+
+      has = group%scheme == scheme_implicit .and. any(group%element%uses(1))
+   end function has_implicit_matrix
 
    !> The equations behind some freedoms, constraints followed.
    pure function equations_of(map, freedoms) result(equations)
@@ -100,7 +109,7 @@ contains
       real(wp), allocatable :: local(:, :), total(:, :), part(:, :)
       integer :: e, n
 
-      if (group%scheme /= scheme_implicit .and. group%lumped) return
+      if (group%lumped .and. .not. has_implicit_matrix(group)) return
       n = size(group%lm, 1)
       allocate (local(n, size(group%lm, 2)), total(n, n), part(n, n))
       call gather(group, d, local)
@@ -110,7 +119,7 @@ contains
             call group%element%mass(e, .false., part)
             total = factors(1)*part
          end if
-         if (group%scheme == scheme_implicit) then
+         if (has_implicit_matrix(group)) then
             call group%element%stiffness(e, local(:, e), part)
             total = total + factors(3)*part
             if (size(group%damping) > 0) total = total + factors(2)*group%damping(:, :, e)

@@ -14,6 +14,7 @@ module external_load
    !> A pattern of forces times a factor of time.
    type :: load_type
       integer :: kind = 0                        !! one of the kind_ parameters
+      integer :: set = 0                         !! element set of a gravity load
       real(wp), allocatable :: pattern(:)        !! (n_freedoms) at full size
       real(wp), allocatable :: start(:)          !! (n_freedoms) what it is ramped from
       logical :: ramped = .false.
@@ -49,11 +50,7 @@ contains
       associate (step => model%steps(i_step))
          call hold_earlier(self, step, t)
          call add_point_loads(self, structure, model, step, t)
-         do i = 1, size(step%gravity)
-            call append(self, kind_gravity, gravity_pattern(structure, model, step%gravity(i)%set, &
-                  step%gravity(i)%acceleration))
-            call give_time(self%loads(size(self%loads)), model, step%gravity(i)%amplitude, t, step)
-         end do
+         call add_gravity(self, structure, model, step, t)
          do i = 1, size(step%base_motions)
             call append(self, kind_base, base_pattern(structure, step%base_motions(i)%dof, &
                   step%base_motions(i)%scale))
@@ -91,6 +88,37 @@ contains
       end do
       self%loads = kept(:n)
    end subroutine hold_earlier
+
+   !> Gravity on a set replaces that of earlier steps on the same set.
+   subroutine add_gravity(self, structure, model, step, t)
+      type(load_set_type), intent(inout) :: self
+      type(structure_type), intent(in) :: structure
+      type(model_type), intent(in) :: model
+      type(step_type), intent(in) :: step
+      real(wp), intent(in) :: t
+      real(wp) :: earlier(structure%map%n_freedoms), weight(2)
+      integer :: i, j, n_earlier
+
+      n_earlier = size(self%loads)
+      do i = 1, size(step%gravity)
+         earlier = 0.0_wp
+         do j = 1, n_earlier
+            if (self%loads(j)%kind /= kind_gravity) cycle
+            if (self%loads(j)%set /= step%gravity(i)%set) cycle
+            weight = weights(self%loads(j), t)
+            earlier = earlier + weight(1)*self%loads(j)%start + weight(2)*self%loads(j)%pattern
+            self%loads(j)%start = 0.0_wp
+            self%loads(j)%pattern = 0.0_wp
+         end do
+         call append(self, kind_gravity, gravity_pattern(structure, model, step%gravity(i)%set, &
+               step%gravity(i)%acceleration))
+         associate (load => self%loads(size(self%loads)))
+            load%set = step%gravity(i)%set
+            call give_time(load, model, step%gravity(i)%amplitude, t, step)
+            if (load%ramped) load%start = earlier
+         end associate
+      end do
+   end subroutine add_gravity
 
    !> Loads on one freedom in one step add up; they replace those of earlier steps there.
    subroutine add_point_loads(self, structure, model, step, t)

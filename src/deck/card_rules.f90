@@ -57,9 +57,9 @@ module card_rules
          'CLOAD;step;AMPLITUDE=/OP=;node or set, dof, force', &
          'DLOAD;step;AMPLITUDE=/OP=;element set or nothing, GRAV, size, nx, ny, nz', &
          'NODE PRINT;step;NSET=/FREQUENCY=;U, V, A, RF', &
-         'NODE FILE;step;NSET=/FREQUENCY=;U, V, A, RF', &
+         'NODE FILE;step;~NSET=/FREQUENCY=;U, V, A, RF', &
          'EL PRINT;step;ELSET=/FREQUENCY=;S, E, ENER', &
-         'EL FILE;step;ELSET=/FREQUENCY=;S, E, ENER', &
+         'EL FILE;step;~ELSET=/FREQUENCY=;S, E, ENER', &
          'CONTACT PRINT;step;FREQUENCY=;CF, CDIS', &
          'CONTACT FILE;step;FREQUENCY=;CF, CDIS', &
          'ENERGY PRINT;step;FREQUENCY=/LIMIT=;-', &

@@ -5,6 +5,7 @@ module critical_step
    use kinds, only: wp
    use small_eigen, only: largest_eigenvalue
    use element_groups, only: group_type
+   use dof_map, only: dof_map_type
    use structure, only: structure_type, row_sum_mass
    implicit none
    private
@@ -39,7 +40,7 @@ contains
       call sum_diagonals(structure, scheme, k_diagonal, c_diagonal)
       do g = 1, size(structure%groups)
          if (structure%groups(g)%scheme /= scheme) cycle
-         call bound_group(structure%groups(g), m, k_diagonal, c_diagonal, critical)
+         call bound_group(structure, structure%groups(g), m, k_diagonal, c_diagonal, critical)
       end do
       critical%omega = sqrt(critical%omega)
       total = sqrt(critical%omega**2 + (critical%damping_rate/2.0_wp)**2) &
@@ -52,7 +53,7 @@ contains
       type(structure_type), intent(in) :: structure
       integer, intent(in) :: scheme
       real(wp), intent(out) :: k_diagonal(:), c_diagonal(:)
-      real(wp), allocatable :: k(:, :), zero(:)
+      real(wp), allocatable :: k(:, :)
       integer :: g, e, i, f
 
       k_diagonal = 0.0_wp
@@ -60,10 +61,9 @@ contains
       do g = 1, size(structure%groups)
          associate (group => structure%groups(g))
             if (group%scheme /= scheme) cycle
-            allocate (k(size(group%lm, 1), size(group%lm, 1)), zero(size(group%lm, 1)))
-            zero = 0.0_wp
+            allocate (k(size(group%lm, 1), size(group%lm, 1)))
             do e = 1, size(group%lm, 2)
-               call group%element%stiffness(e, zero, k)
+               call group%element%largest_stiffness(e, k)
                do i = 1, size(group%lm, 1)
                   f = group%lm(i, e)
                   if (f == 0) cycle
@@ -72,25 +72,25 @@ contains
                   c_diagonal(f) = c_diagonal(f) + group%damping(i, i, e)
                end do
             end do
-            deallocate (k, zero)
+            deallocate (k)
          end associate
       end do
    end subroutine sum_diagonals
 
    !> Raises the bounds (omega squared here) by the elements of a group.
-   subroutine bound_group(group, m, k_diagonal, c_diagonal, critical)
+   subroutine bound_group(structure, group, m, k_diagonal, c_diagonal, critical)
+      type(structure_type), intent(in) :: structure
       type(group_type), intent(in) :: group
       real(wp), intent(in) :: m(:), k_diagonal(:), c_diagonal(:)
       type(critical_type), intent(inout) :: critical
-      real(wp), allocatable :: k(:, :), zero(:)
+      real(wp), allocatable :: k(:, :)
       real(wp) :: lambda
       integer :: e, f
 
-      allocate (k(size(group%lm, 1), size(group%lm, 1)), zero(size(group%lm, 1)))
-      zero = 0.0_wp
+      allocate (k(size(group%lm, 1), size(group%lm, 1)))
       do e = 1, size(group%lm, 2)
-         call group%element%stiffness(e, zero, k)
-         f = massless(group%lm(:, e), k, m)
+         call group%element%largest_stiffness(e, k)
+         f = massless(structure%map, group%lm(:, e), k, m)
          if (f > 0) critical%massless_freedom = f
          lambda = element_bound(group%lm(:, e), k, m, k_diagonal)
          if (lambda > critical%omega) then
@@ -98,15 +98,16 @@ contains
             critical%element = group%member(e)
          end if
          if (size(group%damping) == 0) cycle
-         f = massless(group%lm(:, e), group%damping(:, :, e), m)
+         f = massless(structure%map, group%lm(:, e), group%damping(:, :, e), m)
          if (f > 0) critical%massless_freedom = f
          critical%damping_rate = max(critical%damping_rate, &
                element_bound(group%lm(:, e), group%damping(:, :, e), m, c_diagonal))
       end do
    end subroutine bound_group
 
-   !> A freedom that the matrix acts on and that has no mass, 0 if there is none.
-   pure function massless(lm, matrix, m) result(freedom)
+   !> A freedom that the matrix acts on, that is free and has no mass, 0 if there is none.
+   pure function massless(map, lm, matrix, m) result(freedom)
+      type(dof_map_type), intent(in) :: map
       integer, intent(in) :: lm(:)
       real(wp), intent(in) :: matrix(:, :), m(:)
       integer :: freedom
@@ -115,6 +116,7 @@ contains
       freedom = 0
       do i = 1, size(lm)
          if (lm(i) == 0 .or. .not. matrix(i, i) > 0.0_wp) cycle
+         if (map%id(map%dof(lm(i)), map%node(lm(i))) == 0) cycle
          if (.not. m(lm(i)) > 0.0_wp) freedom = lm(i)
       end do
    end function massless

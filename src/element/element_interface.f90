@@ -17,6 +17,7 @@ module element_interface
    contains
       procedure :: uses
       procedure :: stiffness
+      procedure :: largest_stiffness
       procedure :: damping
       procedure :: mass
       procedure :: internal_force
@@ -44,6 +45,17 @@ contains
 
       matrix = 0.0_wp
    end subroutine stiffness
+
+   !> The stiffest tangent that element e can have, for bounds on frequencies.
+   pure subroutine largest_stiffness(self, e, matrix)
+      class(element_type), intent(in) :: self
+      integer, intent(in) :: e
+      real(wp), intent(out) :: matrix(:, :)     !! (3 n_nodes, 3 n_nodes)
+      real(wp) :: d(size(matrix, 1))
+
+      d = 0.0_wp
+      call self%stiffness(e, d, matrix)
+   end subroutine largest_stiffness
 
    !> Viscous damping matrix of element e, its own dashpot and Rayleigh parts.
    pure subroutine damping(self, e, matrix)

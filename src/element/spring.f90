@@ -18,6 +18,7 @@ module spring
    contains
       procedure :: uses
       procedure :: stiffness
+      procedure :: largest_stiffness
       procedure :: internal_force
       procedure :: strain_energy
    end type spring_type
@@ -77,6 +78,22 @@ contains
       if (.not. self%linear) call table_law(self, dot_product(self%b(:, e), d), force, k)
       call rank_one(k, self%b(:, e), matrix)
    end subroutine stiffness
+
+   !> k b bt with the steepest slope of the table.
+   pure subroutine largest_stiffness(self, e, matrix)
+      class(spring_type), intent(in) :: self
+      integer, intent(in) :: e
+      real(wp), intent(out) :: matrix(:, :)
+      real(wp) :: k
+      integer :: n
+
+      k = self%k
+      if (.not. self%linear) then
+         n = size(self%u)
+         k = maxval((self%f(2:) - self%f(:n - 1))/(self%u(2:) - self%u(:n - 1)))
+      end if
+      call rank_one(k, self%b(:, e), matrix)
+   end subroutine largest_stiffness
 
    pure subroutine internal_force(self, d, force)
       class(spring_type), intent(in) :: self

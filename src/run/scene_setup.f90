@@ -305,7 +305,7 @@ contains
             call fail_at(error, self%model%source, step%procedure_place, &
                   freedom_name(structure, limit%massless_freedom)//' is explicit and has no mass', &
                   'give it a mass, or make its elements implicit with *ELEMENT GROUP')
-         else if (step%dt > limit%step*(1.0_wp + slack)) then
+         else if (step%dt*(1.0_wp - slack) > limit%step) then
             culprit = ''
             if (limit%element > 0) culprit = ' of explicit element ' &
                   //to_text(self%model%elements%id(limit%element))
