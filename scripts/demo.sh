@@ -25,7 +25,8 @@ draw() {
 
 compute input/sdof/sdof.inp demo/sdof.h5
 draw compare_exact sdof demo/sdof.h5 -o demo/sdof_exact.png
-draw plot_history demo/sdof.h5 -o demo/sdof_history.png --events --columns 'node_1/*'
+draw plot_history demo/sdof.h5 -o demo/sdof_history.png --events \
+   --columns node_1/U1,node_1/V1,node_1/A1
 draw plot_energy demo/sdof.h5 -o demo/sdof_energy.png
 draw plot_phase demo/sdof.h5 -o demo/sdof_phase.png --wall -0.5
 
