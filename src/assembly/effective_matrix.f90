@@ -54,7 +54,8 @@ contains
       end do
    end subroutine mark_implicit
 
-   !> Whether a group adds stiffness or damping to the effective matrix: it is implicit and more than
+   !> Whether a group adds stiffness or damping to the effective matrix: it is implicit and more
+   !> than
    !> mere mass.
    pure function has_implicit_matrix(group) result(has)
       type(group_type), intent(in) :: group
