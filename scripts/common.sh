@@ -31,14 +31,15 @@ has_package() {
    [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ]
 }
 
-# Sets `fortran` to a gfortran of version 12 or later, $FC before all others; false if there is none
+# Sets FC to a gfortran of version 12 or later, the given one before all others; false without one
 find_fortran() {
-   for fortran in "${FC:-gfortran}" gfortran-12 gfortran-13 gfortran-14 gfortran-15; do
-      has_command "$fortran" || continue
-      version=$("$fortran" -dumpversion 2>/dev/null) || continue
-      [ "${version%%.*}" -ge 12 ] 2>/dev/null && return 0
+   for name in "${FC:-gfortran}" gfortran gfortran-12 gfortran-13 gfortran-14 gfortran-15; do
+      has_command "$name" || continue
+      version=$("$name" -dumpversion 2>/dev/null) || continue
+      [ "${version%%.*}" -ge 12 ] 2>/dev/null || continue
+      export FC="$name"
+      return 0
    done
-   fortran=
    return 1
 }
 
@@ -52,15 +53,16 @@ want() {
 
 install_packages() {
    has_command apt-get && has_command dpkg-query || {
-      find_fortran || true
-      say 'no apt-get here: gfortran >= 12, cmake, HDF5, BLAS, LAPACK, Python must be there'
+      find_fortran && has_command cmake && has_command python3 ||
+         fail 'no apt-get here: install gfortran >= 12, gcc, make, cmake, HDF5 with Fortran, BLAS,' \
+            'LAPACK and Python 3 with venv by hand'
       return 0
    }
    missing=
    want cc gcc
    want - libc6-dev
    want cmake cmake
-   want ninja ninja-build
+   want make make
    want - libhdf5-dev
    want - libopenblas-dev
    want - liblapack-dev
@@ -122,10 +124,6 @@ configure_and_build() {
    if [ -f "$directory/CMakeCache.txt" ]; then
       grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$directory/CMakeCache.txt" ||
          rm -rf "$directory/CMakeCache.txt" "$directory/CMakeFiles"
-   fi
-   if [ ! -f "$directory/CMakeCache.txt" ]; then
-      set -- -DCMAKE_Fortran_COMPILER="$fortran" "$@"
-      has_command ninja && set -- -G Ninja "$@"
    fi
    say "building ${directory#"$root"/}"
    cmake -S "$root" -B "$directory" -DPython3_EXECUTABLE="$python" "$@" \

@@ -33,13 +33,14 @@ draw plot_phase demo/sdof.h5 -o demo/sdof_phase.png --wall -0.5
 compute input/bar/bar_implicit.inp demo/bar.h5
 draw compare_exact bar demo/bar.h5 -o demo/bar_exact.png
 draw plot_energy demo/bar.h5 -o demo/bar_energy.png
-draw plot_profile demo/bar.h5 -o demo/bar_profile.png
+compute input/bar/bar_mixed.inp demo/bar_mixed.h5
+draw plot_profile demo/bar_mixed.h5 -o demo/bar_mixed_profile.png
 
 compute input/buildings/buildings.inp demo/buildings.h5
-draw plot_history demo/buildings.h5 -o demo/buildings_history.png
+draw plot_history demo/buildings.h5 -o demo/buildings_history.png \
+   --columns node_13/U1,node_23/U1,contact_FLOORS/CDIS
 draw plot_energy demo/buildings.h5 -o demo/buildings_energy.png
-draw plot_profile demo/buildings.h5 -o demo/buildings_profile.png
-draw animate demo/buildings.h5 -o demo/buildings.gif
+draw animate demo/buildings.h5 -o demo/buildings.gif --scale 25
 
 say "pictures and result files are in $root/demo"
 ls demo/*.png demo/*.gif
