@@ -98,13 +98,25 @@ contains
       call close_results(output%results, close_error)
       if (.not. allocated(error) .and. allocated(close_error)) call move_alloc(close_error, error)
       call report_summary(simulation, seconds_now() - started, output%log)
-      if (allocated(error)) then
-         call say(output%log, 'stopped: '//error%message)
-      else
-         call say(output%log, 'completed')
-      end if
+      call report_end(output%log, error)
       call close_log(output%log)
    end subroutine run_deck
+
+   !> The last line of the log: how the run ended; what a message says beyond its first line, as the
+   !> cure, goes before.
+   subroutine report_end(log, error)
+      type(log_type), intent(in) :: log
+      type(error_type), allocatable, intent(in) :: error
+      integer :: cut
+
+      if (.not. allocated(error)) then
+         call say(log, 'completed')
+         return
+      end if
+      cut = index(error%message//new_line('a'), new_line('a'))
+      if (cut < len(error%message)) call say(log, error%message(cut + 1:))
+      call say(log, 'stopped: '//error%message(:cut - 1))
+   end subroutine report_end
 
    !> Back to the start of the run after the rehearsal of its steps.
    subroutine rebuild(simulation, error)
