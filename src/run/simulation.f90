@@ -6,11 +6,13 @@ module simulation
    use clock, only: seconds_now
    use steps, only: step_type, request_energy_print
    use motion_state, only: state_type
+   use external_load, only: load_at
    use energy_ledger, only: ledger_type, open_ledger, close_increment
    use effective_matrix, only: mark_implicit
    use deck_reader, only: read_deck
    use impact_scene, only: contact_motion_type, accept_span
    use constrained_step, only: solve_statically
+   use impact_jump, only: restart_acceleration
    use result_file, only: result_file_type, open_results, record_increment, close_results, &
          write_system, flush_results
    use command_line, only: command_type, version_text
@@ -196,9 +198,11 @@ contains
       type(output_type), intent(inout) :: output
       type(error_type), allocatable, intent(out) :: error
       logical, allocatable :: implicit_equation(:)
+      real(wp), allocatable :: load_before(:)
       real(wp) :: before
 
       before = simulation%scene%ledger%total
+      if (i_step > 1) load_before = load_now(simulation)
       call begin_step(simulation, i_step, error)
       if (allocated(error)) return
       call report_step(simulation, i_step, output%log)
@@ -215,6 +219,9 @@ contains
                   simulation%model%steps(i_step)%dt, &
                   error)
             if (allocated(error)) return
+         else if (i_step > 1 .and. .not. scene%system%static) then
+            call meet_new_load(simulation, load_before, error)
+            if (allocated(error)) return
          end if
          if (i_step > 1) return
          call close_increment(scene%ledger, scene%system, simulation%motion%motion)
@@ -227,6 +234,27 @@ contains
          call flush_results(output%results, error)
       end associate
    end subroutine start_step
+
+   !> The applied forces at the time reached.
+   function load_now(simulation) result(force)
+      type(simulation_type), intent(in) :: simulation
+      real(wp) :: force(simulation%scene%system%structure%map%n_freedoms)
+
+      force = load_at(simulation%scene%system%loads, size(force), simulation%motion%motion%t)
+   end function load_now
+
+   !> A load that jumps where one dynamic step goes on from another changes the acceleration at once;
+   !> carried on, the old one would take half of the jump off the first increment.
+   subroutine meet_new_load(simulation, load_before, error)
+      type(simulation_type), intent(inout) :: simulation
+      real(wp), intent(in) :: load_before(:)
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), parameter :: round_off = 1.0e-12_wp
+
+      if (maxval(abs(load_now(simulation) - load_before)) <= round_off*maxval(abs(load_before))) return
+      call restart_acceleration(simulation%scene, simulation%motion, error)
+      simulation%motion%fresh = .true.
+   end subroutine meet_new_load
 
    !> A dynamic step finds its own acceleration unless it goes on from another dynamic step.
    pure function starts_anew(simulation, i_step) result(anew)
