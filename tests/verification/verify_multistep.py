@@ -94,6 +94,11 @@ def check_preload(checks):
     check_order(checks, 'velocity after a preload', text, lambda s: 0.5 + 1.5 * np.sin(2.0 * s),
                 start=1.0)
 
+    text = mass_deck(step('DYNAMIC, DIRECT', '<h>', 1) + step('DYNAMIC, DIRECT', '<h>', 4,
+                                                              '*CLOAD\n1, 1, 2\n'))
+    check_order(checks, 'load that comes on at once in a second dynamic step', text,
+                lambda s: 0.5 - 0.5 * np.cos(2.0 * s), steps=(0.1, 0.05, 0.02, 0.01), start=1.0)
+
     text = mass_deck(step('STATIC', 1, 1, '*CLOAD\n1, 1, 2\n') + step('DYNAMIC, DIRECT', 0.01, 4),
                      v0=3.0)
     checks.close(u1(run_deck(text))[1][1:], d[1:], 1e-13,
