@@ -20,6 +20,7 @@ module impact_jump
    !> What happens at one instant.
    type :: impact_type
       logical, allocatable :: new(:)         !! (n_rows) rows that hit
+      logical, allocatable :: near(:)        !! (n_rows) rows at the wall that take part if pushed
       logical, allocatable :: forced(:)      !! (n_rows) of these, captured: pressed at rest
       logical :: plastic = .false.           !! every new row is captured: too many events
       real(wp) :: dt = 0.0_wp                !! the whole step, for the capture speed
@@ -50,7 +51,7 @@ contains
 
       was = motion%touching
       before = row_rates(scene%rows, motion%motion)
-      call mass_compliance(scene, was .or. impact%new, compliance, error)
+      call mass_compliance(scene, was .or. impact%new .or. impact%near, compliance, error)
       if (allocated(error)) return
       call find_impulse(scene, motion, impact, compliance, before, impulse, held, error)
       if (allocated(error)) return
@@ -96,6 +97,8 @@ contains
          after = row_rates(scene%rows, motion%motion)
          held = motion%touching .or. impact%forced .or. (impact%new .and. impact%plastic)
          held = held .or. (impact%new .and. .not. e > 0.0_wp .and. after <= impact%rate_limit)
+         held(compliance%rows) = held(compliance%rows) .or. &
+               (impact%near(compliance%rows) .and. p > 0.0_wp)
          call hold_acceleration(scene, motion, held, error)
          if (allocated(error)) return
          limits = max(capture_speeds(scene, motion%motion%a, impact%dt), impact%rate_limit)

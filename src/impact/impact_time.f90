@@ -38,6 +38,7 @@ module impact_time
    end type bracket_type
 
    integer, parameter :: max_trials = 100
+   integer, parameter :: max_halvings = 40
    !> A bracket below this part of the span cannot be shrunk further.
    real(wp), parameter :: width_limit = 4.0e-16_wp
 
@@ -100,8 +101,29 @@ contains
       rise = find_rise(path)
       bracket = 0.0_wp
       if (path%r0 <= span%rate_limit .or. rise < 0.0_wp .or. rise >= high) return
-      if (path_value(path, rise) > span%gap_limit) bracket = [rise, high]
+      if (path_value(path, rise) <= span%gap_limit) return
+      bracket = [rise, high]
+      call start_open(scene, from, span, row, bracket, error)
    end subroutine bracket_hit
+
+   !> The cubic only guesses where a row that leaves the wall turns back: halves the start of the
+   !> bracket until the gap is open there on the path that is really taken.
+   subroutine start_open(scene, from, span, row, bracket, error)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(in) :: from
+      type(span_type), intent(in) :: span
+      integer, intent(in) :: row
+      real(wp), intent(inout) :: bracket(2)
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      do i = 1, max_halvings
+         if (resolved_gap(scene, from, span, bracket(1), row, error) > span%gap_limit) return
+         if (allocated(error)) return
+         bracket(1) = bracket(1)/2.0_wp
+      end do
+      bracket = 0.0_wp
+   end subroutine start_open
 
    !> Gap of a row at the end of a step of length x.
    function resolved_gap(scene, from, span, x, row, error) result(gap)

@@ -273,6 +273,10 @@ contains
       impact%new = .not. motion%touching .and. rates < -impact%rate_limit .and. &
             (gaps <= span%gap_limit*(merge_gap_tolerance/gap_tolerance) .or. &
             gaps <= -merge_time_tolerance*progress%dt*rates)
+      ! an impact elsewhere may push a row at the wall; without a rebound of its own it answers at once
+      impact%near = .not. motion%touching .and. .not. impact%new .and. &
+            .not. scene%rows%restitution > 0.0_wp .and. &
+            gaps <= span%gap_limit*(merge_gap_tolerance/gap_tolerance)
       allocate (impact%forced(scene%rows%n))
       impact%forced = .false.
       do i = 1, hits%n
@@ -285,6 +289,7 @@ contains
          impact%forced(hits%row(minloc(gaps(hits%row(:hits%n)), dim=1))) = .true.
       end if
       impact%new = impact%new .or. impact%forced
+      impact%near = impact%near .and. .not. impact%new
    end subroutine choose_rows
 
    !> The first state: rows that touch and close are hit at once; rows that touch at rest and are
@@ -303,7 +308,7 @@ contains
       impact%dt = dt
       impact%beta = impact_beta(scene, dt)
       impact%rate_limit = rate_tolerance*rate_size(scene%rows, motion%motion)
-      allocate (impact%forced(scene%rows%n))
+      allocate (impact%forced(scene%rows%n), impact%near(scene%rows%n))
       impact%forced = .false.
       call capture_pressed(scene, motion, gap_limit, impact%rate_limit, error)
       if (allocated(error)) return
@@ -311,6 +316,9 @@ contains
          impact%new = .not. motion%touching .and. row_gaps(scene%rows, motion%motion) <= gap_limit &
                .and. row_rates(scene%rows, motion%motion) < -impact%rate_limit
          if (.not. any(impact%new)) exit
+         impact%near = .not. motion%touching .and. .not. impact%new .and. &
+               .not. scene%rows%restitution > 0.0_wp .and. &
+               row_gaps(scene%rows, motion%motion) <= gap_limit
          call apply_impact(scene, motion, impact, error)
          if (allocated(error)) return
       end do

@@ -10,6 +10,10 @@ module complementarity
 
    !> Residuals below this part of the problem's size count as zero.
    real(wp), parameter :: relative_tolerance = 1.0e-12_wp
+   !> A pivot below this part of its diagonal entry means that rows depend on each other.
+   real(wp), parameter :: pivot_tolerance = 1.0e-14_wp
+   !> What is then added to the diagonal, in parts of its mean.
+   real(wp), parameter :: dependence_tolerance = 1.0e-12_wp
 
 contains
 
@@ -54,25 +58,52 @@ contains
       call solve_active(w, q, active, x, solved)
    end subroutine solve_equality
 
-   !> x from the active rows as equations, zero elsewhere.
+   !> x from the active rows as equations, zero elsewhere. Rows that depend on each other (a chain
+   !> squeezed between two walls) leave W singular: then a part of its trace on the diagonal picks one
+   !> of the answers, which all give the same motion.
    pure subroutine solve_active(w, q, active, x, solved)
       real(wp), intent(in) :: w(:, :), q(:)
       logical, intent(in) :: active(:)
       real(wp), intent(out) :: x(:)
       logical, intent(out) :: solved
-      integer :: rows(count(active)), i, info
-      real(wp) :: matrix(count(active), count(active)), rhs(count(active), 1)
+      integer :: rows(count(active)), i
+      real(wp) :: matrix(count(active), count(active)), rhs(count(active)), shift
 
       x = 0.0_wp
       solved = .true.
       if (size(rows) == 0) return
       rows = pack([(i, i=1, size(q))], active)
       matrix = w(rows, rows)
-      rhs(:, 1) = -q(rows)
-      call dposv('U', size(rows), 1, matrix, size(rows), rhs, size(rows), info)
-      solved = info == 0
-      if (solved) x(rows) = rhs(:, 1)
+      rhs = -q(rows)
+      call solve_definite(matrix, rhs, 0.0_wp, solved)
+      if (.not. solved .and. all([(matrix(i, i) > 0.0_wp, i=1, size(rows))])) then
+         shift = dependence_tolerance*sum([(matrix(i, i), i=1, size(rows))])/size(rows)
+         call solve_definite(matrix, rhs, shift, solved)
+      end if
+      if (solved) x(rows) = rhs
    end subroutine solve_active
+
+   !> Cholesky's method on matrix + shift I; refuses pivots lost in round-off.
+   pure subroutine solve_definite(matrix, rhs, shift, solved)
+      real(wp), intent(in) :: matrix(:, :)
+      real(wp), intent(inout) :: rhs(:)          !! right-hand side, then solution if `solved`
+      real(wp), intent(in) :: shift
+      logical, intent(out) :: solved
+      real(wp) :: factor(size(rhs), size(rhs)), b(size(rhs), 1)
+      integer :: i, info
+
+      factor = matrix
+      do i = 1, size(rhs)
+         factor(i, i) = factor(i, i) + shift
+      end do
+      b(:, 1) = rhs
+      call dposv('U', size(rhs), 1, factor, size(rhs), b, size(rhs), info)
+      solved = info == 0
+      do i = 1, size(rhs)
+         if (solved) solved = factor(i, i)**2 > pivot_tolerance*(matrix(i, i) + shift)
+      end do
+      if (solved) rhs = b(:, 1)
+   end subroutine solve_definite
 
    !> Goes from x towards the trial until a component reaches zero, and drops that component.
    pure subroutine step_to_bound(trial, x, active)
