@@ -51,6 +51,16 @@ want() {
    esac
 }
 
+# OpenBLAS 0.3.20 of Ubuntu 22.04 solves wrongly on processors with AVX512-BF16: not there
+blas_package() {
+   if grep -qs '^VERSION_CODENAME=jammy' /etc/os-release; then
+      echo libblas-dev
+   else
+      echo libopenblas-dev
+   fi
+}
+
+# Installs what is missing of the Debian packages that carom needs, and of those given
 install_packages() {
    has_command apt-get && has_command dpkg-query || {
       find_fortran && has_command cmake && has_command python3 ||
@@ -64,7 +74,7 @@ install_packages() {
    want cmake cmake
    want make make
    want - libhdf5-dev
-   want - libopenblas-dev
+   want - "$(blas_package)"
    want - liblapack-dev
    want python3 python3
    python3 -c 'import venv, ensurepip' 2>/dev/null || missing="$missing python3-venv"
