@@ -243,15 +243,16 @@ contains
       force = load_at(simulation%scene%system%loads, size(force), simulation%motion%motion%t)
    end function load_now
 
-   !> A load that jumps where one dynamic step goes on from another changes the acceleration at once;
-   !> carried on, the old one would take half of the jump off the first increment.
+   !> A load that jumps where one dynamic step goes on from another changes the acceleration at
+   !> once; carried on, the old one would take half of the jump off the first increment.
    subroutine meet_new_load(simulation, load_before, error)
       type(simulation_type), intent(inout) :: simulation
       real(wp), intent(in) :: load_before(:)
       type(error_type), allocatable, intent(out) :: error
       real(wp), parameter :: round_off = 1.0e-12_wp
 
-      if (maxval(abs(load_now(simulation) - load_before)) <= round_off*maxval(abs(load_before))) return
+      if (maxval(abs(load_now(simulation) - load_before)) <= &
+            round_off*maxval(abs(load_before))) return
       call restart_acceleration(simulation%scene, simulation%motion, error)
       simulation%motion%fresh = .true.
    end subroutine meet_new_load
