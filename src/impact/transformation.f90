@@ -273,7 +273,8 @@ contains
       impact%new = .not. motion%touching .and. rates < -impact%rate_limit .and. &
             (gaps <= span%gap_limit*(merge_gap_tolerance/gap_tolerance) .or. &
             gaps <= -merge_time_tolerance*progress%dt*rates)
-      ! an impact elsewhere may push a row at the wall; without a rebound of its own it answers at once
+      ! an impact elsewhere may push a row at the wall; without a rebound of its own it answers at
+      ! once
       impact%near = .not. motion%touching .and. .not. impact%new .and. &
             .not. scene%rows%restitution > 0.0_wp .and. &
             gaps <= span%gap_limit*(merge_gap_tolerance/gap_tolerance)

@@ -59,8 +59,8 @@ contains
    end subroutine solve_equality
 
    !> x from the active rows as equations, zero elsewhere. Rows that depend on each other (a chain
-   !> squeezed between two walls) leave W singular: then a part of its trace on the diagonal picks one
-   !> of the answers, which all give the same motion.
+   !> squeezed between two walls) leave W singular: then a part of its trace on the diagonal picks
+   !> one of the answers, which all give the same motion.
    pure subroutine solve_active(w, q, active, x, solved)
       real(wp), intent(in) :: w(:, :), q(:)
       logical, intent(in) :: active(:)
