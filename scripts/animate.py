@@ -1,14 +1,15 @@
 """A moving picture of a run: animate.py RESULT.h5 [--scale 1] [--every 1] [--fps 25] [-o x.mp4]
 
 Draws the frames of /VTKHDF in the x-y plane: points + scale * U. Rigid planes appear if the file
-has them, and a flash when an impact has just happened. Writes a GIF, or with
--o NAME.mp4 an MP4 film (needs ffmpeg).
+has them, gap elements as thin lines, supports as grey squares, and where an impact has just
+happened the node is red. Writes a GIF, or with -o NAME.mp4 an MP4 film (needs ffmpeg).
 """
 
 import os
+import re
 
 import numpy as np
-from carom_results import BLACK, BLUE, RED, SKY, Results, ScriptError, make_parser, plt, run
+from carom_results import BLACK, BLUE, ORANGE, RED, SKY, Results, ScriptError, make_parser, plt, run
 from matplotlib import animation
 from matplotlib.collections import LineCollection, PolyCollection
 
@@ -16,6 +17,29 @@ VERTEX, LINE = 1, 3
 FACES = {5: [0, 1, 2], 9: [0, 1, 2, 3], 22: [0, 3, 1, 4, 2, 5], 23: [0, 4, 1, 5, 2, 6, 3, 7]}
 MOST_FRAMES = 400
 FLASH = 3  # pictures that an impact stays visible
+
+
+def read_mesh(deck):
+    """Places of the nodes by their id, and the node pairs of gap elements, as far as numbers tell."""
+    places, gaps, card, parameters = {}, [], "", {}
+    for line in deck.decode("utf-8", "replace").splitlines():
+        if line.lstrip().startswith("*"):
+            if not line.lstrip().startswith("**"):
+                card = re.sub(r"\s", "", line).upper() + ","
+            continue
+        line = re.sub(r"<(.*?)>", lambda name: parameters.get(name[1].strip().upper(), ""), line)
+        try:
+            if card.startswith("*PARAMETER,"):
+                name, value = line.split("=")
+                parameters[name.strip().upper()] = value.strip()
+            elif card.startswith("*NODE,"):
+                values = [float(word) for word in line.split(",") if word.strip()]
+                places[int(values[0])] = np.array((values[1:] + [0.0, 0.0])[:3])
+            elif card.startswith("*ELEMENT,") and "TYPE=GAPUNI," in card:
+                gaps.append([int(word) for word in line.split(",") if word.strip()][1:3])
+        except (ValueError, IndexError):
+            continue  # not a plain number: what is drawn is then a little plainer
+    return places, gaps
 
 
 class Film:
@@ -40,7 +64,19 @@ class Film:
         types, offsets = grid["Types"][()], grid["Offsets"][()]
         connectivity = grid["Connectivity"][()]
         cells = [connectivity[a:b] for a, b in zip(offsets[:-1], offsets[1:])]
-        self.lines = [c[:2] for c, kind in zip(cells, types) if kind == LINE]
+        deck = self.file.get("model/deck")
+        places, gaps = read_mesh(b"" if deck is None else bytes(deck[()]))
+        self.point_of = {
+            node: int(np.abs(self.points - place).sum(axis=1).argmin())
+            for node, place in places.items()
+        }
+        gaps = {frozenset(self.point_of.get(node, -1) for node in pair) for pair in gaps}
+        lines = [(i, c[:2]) for i, (c, kind) in enumerate(zip(cells, types)) if kind == LINE]
+        self.gaps = [line for _, line in lines if frozenset(line.tolist()) in gaps]
+        lines = [(i, line) for i, line in lines if frozenset(line.tolist()) not in gaps]
+        self.lines = [line for _, line in lines]
+        self.line_cells = [i for i, _ in lines]
+        self.n_cells = len(types)
         self.faces = [c[FACES[kind]] for c, kind in zip(cells, types) if kind in FACES]
         self.vertices = [c[0] for c, kind in zip(cells, types) if kind == VERTEX]
 
@@ -50,14 +86,31 @@ class Film:
         u = self.values[begin : begin + len(self.points)]
         return (self.points + self.scale * u)[:, :2]
 
+    def stress(self, frame):
+        """The axial stress of the lines in a frame; None without any."""
+        if "CellData/S" not in self.file["VTKHDF"] or not self.lines:
+            return None
+        begin = int(self.file["VTKHDF/Steps/CellDataOffsets/S"][frame])
+        return self.file["VTKHDF/CellData/S"][begin : begin + self.n_cells][self.line_cells, 0]
+
     def hits(self, frame, before):
-        """Impacts since a frame before."""
+        """Points that had an impact since a frame before; with a gap element, both of its points."""
         if frame == 0 or len(self.events["time"]) == 0:
-            return False
+            return set()
         time, kind = self.events["time"], self.events["kind"]
-        return bool(
-            np.any((time > self.times[before]) & (time <= self.times[frame]) & (kind == "impact"))
-        )
+        recent = (time > self.times[before]) & (time <= self.times[frame]) & (kind == "impact")
+        hit = {self.point_of.get(node, -1) for node in np.asarray(self.events["node"])[recent].tolist()}
+        for gap in self.gaps:
+            if gap[1] in hit:  # the node of an event is the second of its gap
+                hit.add(int(gap[0]))
+        return hit
+
+    def still(self, frames):
+        """Points that never move: supports."""
+        looked_at = frames[:: max(1, len(frames) // 60)] + [frames[-1]]
+        start = self.place(frames[0])
+        moved = np.max([np.abs(self.place(frame) - start).max(axis=1) for frame in looked_at], axis=0)
+        return np.flatnonzero(moved == 0.0) if moved.max() > 0 else np.array([], int)
 
     def limits(self, frames):
         """The corners of all that is to be seen, with a margin."""
@@ -100,9 +153,10 @@ class Picture:
         self.film = film
         low, high = film.limits(frames)
         width, height = high - low
-        aspect = min(max(height / width, 0.2), 1.2)
-        tall = 7.6 * aspect + 1.2
-        self.figure, self.axes = plt.subplots(figsize=(7.6, tall), dpi=90)
+        aspect = height / width
+        wide = 7.6 if aspect < 1 else max(5.0, 7.6 / aspect + 0.6)
+        tall = min(max(wide * aspect, 1.6), 7.6) + 1.2
+        self.figure, self.axes = plt.subplots(figsize=(wide, tall), dpi=90)
         self.figure.subplots_adjust(left=0.12, right=0.97, top=0.88, bottom=0.62 / tall)
         self.axes.set_xlim(low[0], high[0])
         self.axes.set_ylim(low[1], high[1])
@@ -113,24 +167,52 @@ class Picture:
         draw_planes(self.axes, film, low, high)
         few = len(film.points) <= 60
         self.faces = PolyCollection([], facecolor=SKY, edgecolor=BLACK, lw=0.6 if few else 0.25)
-        self.lines = LineCollection([], color=BLUE, lw=2.5)
+        self.stressed = film.stress(frames[0]) is not None
+        colour = {} if self.stressed else {"color": BLUE}
+        self.lines = LineCollection([], lw=3.0 if few else 2.0, **colour)
+        self.gaps = LineCollection([], color="0.6", lw=1.0, linestyles="dotted", zorder=1)
+        still = film.still(frames)
+        if few and len(still) and not film.faces:
+            self.axes.scatter(*film.points[still, :2].T, s=160, marker="s", color="0.6", zorder=2)
+        self.axes.add_collection(self.gaps)
         self.axes.add_collection(self.faces)
         self.axes.add_collection(self.lines)
+        self.show_stress(frames)
         only_chain = not film.faces
         shown = np.arange(len(film.points)) if only_chain and few else np.array(film.vertices, int)
-        self.shown = shown
+        self.shown = np.setdiff1d(shown, still)
         size = 90 if len(shown) <= 5 else 30 if len(shown) <= 20 else 8
         self.dots = self.axes.scatter([], [], s=size, color=BLUE, edgecolor=BLACK, zorder=3)
+        self.flash = self.axes.scatter([], [], s=260, color=ORANGE, alpha=0.6, lw=0, zorder=2.5)
         self.title = self.axes.set_title("")
+
+    def show_stress(self, frames):
+        """Lines in the colour of their stress, if the file has it."""
+        if not self.stressed:
+            return
+        looked_at = frames[:: max(1, len(frames) // 60)] + [frames[-1]]
+        most = max(np.abs(self.film.stress(frame)).max() for frame in looked_at)
+        self.lines.set(cmap="coolwarm", clim=(-most, most), linewidth=6.0)
+        self.figure.subplots_adjust(right=0.85)
+        box = self.axes.get_position()
+        place = self.figure.add_axes((0.87, box.y0, 0.02, box.height))
+        bar = self.figure.colorbar(self.lines, cax=place, ticks=[-most, 0.0, most])
+        bar.ax.set_title("stress", fontsize=11)
+        bar.ax.set_yticklabels([f"{-most:.3g}", "0", f"{most:.3g}"])
 
     def show(self, frame, before):
         """Draws one frame."""
         place = self.film.place(frame)
         self.faces.set_verts([place[face] for face in self.film.faces])
         self.lines.set_segments([place[line] for line in self.film.lines])
+        if self.stressed:
+            self.lines.set_array(self.film.stress(frame))
+        self.gaps.set_segments([place[line] for line in self.film.gaps])
         self.dots.set_offsets(place[self.shown] if len(self.shown) else np.empty((0, 2)))
         hit = self.film.hits(frame, before)
-        self.dots.set_facecolor(RED if hit else BLUE)
+        self.dots.set_facecolor([RED if point in hit else BLUE for point in self.shown])
+        struck = place[sorted(hit - {-1})] if hit - {-1} else np.empty((0, 2))
+        self.flash.set_offsets(struck)
         for spine in self.axes.spines.values():
             spine.set_edgecolor(RED if hit else BLACK)
             spine.set_linewidth(3.0 if hit else 0.8)

@@ -38,7 +38,7 @@ EVENT_LINES = {"impact": "dashed", "capture": "dotted", "release": "dashdot"}
 QUANTITIES = {
     "U": "displacement", "V": "velocity", "A": "acceleration", "RF": "reaction force",
     "S": "stress", "E": "strain", "PEEQ": "equivalent plastic strain", "ENER": "strain energy",
-    "CF": "contact force", "impulse": "contact impulse",
+    "CF": "contact force", "CDIS": "smallest gap", "impulse": "contact impulse",
 }
 
 

@@ -6,11 +6,11 @@ is a line. The lower panel shows the balance error.
 
 import numpy as np
 from carom_results import (
-    BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY, Results, make_parser, mark_events, plt, run, save,
+    BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, YELLOW, Results, make_parser, mark_events, plt, run, save,
 )
 
 PARTS = {
-    "kinetic": BLUE, "strain": ORANGE, "damping": SKY, "plastic": GREEN, "friction": PURPLE,
+    "kinetic": BLUE, "strain": ORANGE, "damping": GREEN, "plastic": YELLOW, "friction": PURPLE,
     "impact_loss": RED,
 }
 

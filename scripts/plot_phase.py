@@ -9,7 +9,7 @@ from carom_results import (
     BLUE, RED, Results, ScriptError, label, make_parser, plt, run, save,
 )
 
-WORST_MISMATCH = 0.25  # of the largest speed, between an event's and the history's velocity
+WORST_MISMATCH = 1.5  # between an event's and the history's velocity, in changes of one increment
 
 
 def choose_node(results, dof):
@@ -41,14 +41,24 @@ def jumps(events, node, time, d, v):
         # gap rate and velocity agree up to the sign of the wall's normal
         sign = 1.0 if abs(v[row - 1] - before) <= abs(v[row - 1] + before) else -1.0
         v_before, v_after = sign * before, sign * after
-        if abs(v[row - 1] - v_before) > WORST_MISMATCH * np.abs(v).max():
-            continue
         if found and found[-1][0] == row:  # a second impact within one increment
             place = found[-1][1]
+        elif not fits(v, row, v_before, v_after):
+            continue
         else:
             place = d[row - 1] + 0.5 * (when - time[row - 1]) * (v[row - 1] + v_before)
         found.append((row, place, v_before, v_after))
-    return found
+    # against a node that moves, gap rates are no velocities, though a few may seem so
+    return found if len(found) > 0.8 * mine.sum() else []
+
+
+def fits(v, row, before, after):
+    """Whether the rates of an event are velocities of the node; where it meets a node that moves
+    they are not, and the history's own points are drawn."""
+    near = np.abs(np.diff(v[max(row - 3, 0) : row])), np.abs(np.diff(v[row : row + 3]))
+    usual = max([change.max() for change in near if len(change)], default=np.inf)
+    limit = WORST_MISMATCH * usual + 1e-9 * np.abs(v).max()
+    return abs(v[row - 1] - before) <= limit and abs(v[row] - after) <= limit + abs(before) * 0.5
 
 
 def draw(results, node, dof, wall):
