@@ -8,6 +8,7 @@ module impact_jump
    use structure, only: inertia_force
    use energy_ledger, only: record_impact
    use constraint_rows, only: row_gaps, row_rates, row_accelerations, row_vector, row_forces, &
+         rate_size, &
          wall_rates
    use impact_scene, only: scene_type, contact_motion_type, event_type, record_event, &
          capture_speeds, event_impact, event_capture, event_limit
@@ -15,7 +16,10 @@ module impact_jump
    private
 
    public :: impact_type, compliance_type, apply_impact, restart_acceleration, project_touching
-   public :: mass_compliance, set_rates
+   public :: mass_compliance, set_rates, find_thrown
+
+   !> Opening rates below this part of the speeds are round-off.
+   real(wp), parameter :: thrown_tolerance = 1.0e-9_wp
 
    !> What happens at one instant.
    type :: impact_type
@@ -182,6 +186,31 @@ contains
       motion%lambda(compliance%rows) = lambda
       motion%motion%a = motion%motion%a + matmul(compliance%x, lambda)
    end subroutine hold_acceleration
+
+   !> Touching rows that leave the wall because it has slowed down: opening faster than round-off,
+   !> and
+   !> so fast that the forces on them do not bring them back within the step.
+   subroutine find_thrown(scene, motion, dt, thrown, error)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(in) :: motion
+      real(wp), intent(in) :: dt                 !! the whole step
+      logical, intent(out) :: thrown(:)          !! (n_rows)
+      type(error_type), allocatable, intent(out) :: error
+      type(contact_motion_type) :: free
+      real(wp) :: rates(scene%rows%n), closing(scene%rows%n)
+
+      thrown = .false.
+      if (.not. any(motion%touching)) return
+      rates = row_rates(scene%rows, motion%motion)
+      thrown = motion%touching .and. rates > thrown_tolerance*rate_size(scene%rows, motion%motion)
+      if (.not. any(thrown)) return
+      free = motion
+      free%touching = motion%touching .and. .not. thrown
+      call restart_acceleration(scene, free, error)
+      if (allocated(error)) return
+      closing = max(0.0_wp, -row_accelerations(scene%rows, free%motion%a))
+      thrown = thrown .and. rates > dt*closing
+   end subroutine find_thrown
 
    !> Puts touching rows back on gap zero and gap rate zero where they are off by more than the
    !> limits, by the smallest mass-weighted change.

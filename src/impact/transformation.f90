@@ -15,7 +15,7 @@ module transformation
    use constrained_step, only: advance_smoothly
    use impact_time, only: span_type, hits_type, find_hits, locate_impact
    use impact_jump, only: impact_type, apply_impact, restart_acceleration, project_touching, &
-         mass_compliance, compliance_type
+         mass_compliance, compliance_type, find_thrown
    implicit none
    private
 
@@ -115,12 +115,21 @@ contains
       type(span_type), intent(in) :: span
       type(progress_type), intent(inout) :: progress
       type(error_type), allocatable, intent(out) :: error
+      logical :: thrown(scene%rows%n)
 
       progress%remaining = progress%remaining - dt
       call accept_span(scene, motion, next)
       motion = next
       motion%touching = next%touching .and. span%held
       motion%fresh = .false.
+      call find_thrown(scene, motion, progress%dt, thrown, error)
+      if (allocated(error)) return
+      if (any(thrown)) then
+         call release_rows(scene, motion, thrown, progress)
+         call restart_acceleration(scene, motion, error)
+         if (allocated(error)) return
+         motion%fresh = .true.
+      end if
       call project_touching(scene, motion, span%gap_limit, &
             rate_tolerance*rate_size(scene%rows, motion%motion), error)
    end subroutine take_span
