@@ -20,7 +20,7 @@ FLASH = 3  # pictures that an impact stays visible
 
 
 def read_mesh(deck):
-    """Places of the nodes by their id, and the node pairs of gap elements, as far as numbers tell."""
+    """Places of the nodes by id, and the node pairs of gap elements, as far as numbers tell."""
     places, gaps, card, parameters = {}, [], "", {}
     for line in deck.decode("utf-8", "replace").splitlines():
         if line.lstrip().startswith("*"):
@@ -94,12 +94,13 @@ class Film:
         return self.file["VTKHDF/CellData/S"][begin : begin + self.n_cells][self.line_cells, 0]
 
     def hits(self, frame, before):
-        """Points that had an impact since a frame before; with a gap element, both of its points."""
+        """Points with an impact since a frame before; of a gap element, both of its points."""
         if frame == 0 or len(self.events["time"]) == 0:
             return set()
         time, kind = self.events["time"], self.events["kind"]
         recent = (time > self.times[before]) & (time <= self.times[frame]) & (kind == "impact")
-        hit = {self.point_of.get(node, -1) for node in np.asarray(self.events["node"])[recent].tolist()}
+        nodes = np.asarray(self.events["node"])[recent].tolist()
+        hit = {self.point_of.get(node, -1) for node in nodes}
         for gap in self.gaps:
             if gap[1] in hit:  # the node of an event is the second of its gap
                 hit.add(int(gap[0]))
@@ -109,7 +110,8 @@ class Film:
         """Points that never move: supports."""
         looked_at = frames[:: max(1, len(frames) // 60)] + [frames[-1]]
         start = self.place(frames[0])
-        moved = np.max([np.abs(self.place(frame) - start).max(axis=1) for frame in looked_at], axis=0)
+        ways = [np.abs(self.place(frame) - start).max(axis=1) for frame in looked_at]
+        moved = np.max(ways, axis=0)
         return np.flatnonzero(moved == 0.0) if moved.max() > 0 else np.array([], int)
 
     def limits(self, frames):

@@ -61,7 +61,7 @@ def compare_two_dof(results, given):
 
 
 def compare_bar(results, given):
-    """Contact force; no difference is taken within 10 % of the contact time around its two steps."""
+    """Contact force; no difference is taken within 10 % of its duration around both steps."""
     chosen = choose(results, given.columns, ["/CF1"], 1)
     table = results.table("history", ["time", *chosen])
     time, force = table["time"], np.abs(table[chosen[0]])

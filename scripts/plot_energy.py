@@ -6,7 +6,8 @@ is a line. The lower panel shows the balance error.
 
 import numpy as np
 from carom_results import (
-    BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, YELLOW, Results, make_parser, mark_events, plt, run, save,
+    BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, YELLOW, Results, make_parser, mark_events, plt, run,
+    save,
 )
 
 PARTS = {

@@ -1,4 +1,4 @@
-"""Writes ground.inc: a ground acceleration of 20 s, the same at every run (make_ground.py [seed])."""
+"""Writes ground.inc, a ground acceleration of 20 s, always the same: make_ground.py [seed]"""
 import sys
 from pathlib import Path
 
@@ -38,7 +38,8 @@ def main():
     lines += [', '.join(pairs[i:i + 4]) for i in range(0, len(pairs), 4)]
     path = Path(__file__).with_name('ground.inc')
     path.write_text('\n'.join(lines) + '\n')
-    print(f'{path}: {len(pairs)} points, largest {np.abs(a).max():.4f} at {t[np.abs(a).argmax()]:.2f}')
+    top = np.abs(a).argmax()
+    print(f'{path}: {len(pairs)} points, largest {abs(a[top]):.4f} at {t[top]:.2f}')
 
 
 if __name__ == '__main__':

@@ -1,4 +1,4 @@
-"""An elastic bar hits a wall (Doyen, Ern and Piperno 2011): input/bar against the exact solution."""
+"""An elastic bar hits a wall (Doyen, Ern and Piperno 2011): input/bar and its solution."""
 import re
 
 import h5py
@@ -36,8 +36,9 @@ class Bar:
         self.captures = len(self.run.events('capture')['time'])
 
     def line(self):
-        return (f'plateau {self.plateau:.3f} deviation {self.deviation:.3f} energy {self.energy:.5f} '
-                f'impulse {self.impulse:.3f} last contact {self.last:.4f} events '
+        return (f'plateau {self.plateau:.3f} deviation {self.deviation:.3f} '
+                f'energy {self.energy:.5f} impulse {self.impulse:.3f} '
+                f'last contact {self.last:.4f} events '
                 f'{self.impacts} {self.captures} {self.releases}')
 
     def log(self):
@@ -82,7 +83,8 @@ def check_fictitious(checks):
     print(f'        fictitious, Courant 1: {bar.line()}')
     checks.close(bar.impulse, IMPULSE, 0.01*IMPULSE, 'fictitious force: impulse within 1 % of 200')
     before, after = momentum(bar)
-    checks.close(after - before, bar.impulse, 1e-9, 'fictitious force: momentum gained is the impulse')
+    checks.close(after - before, bar.impulse, 1e-9,
+                 'fictitious force: momentum gained is the impulse')
 
 
 def motion(bar, times):
