@@ -265,6 +265,42 @@ def check_moving_wall(checks):
                    'wall that turns round under a resting mass: balance error')
 
 
+def shaken(w, h):
+    """A mass lies on a table that shakes by 0.5 sin(w t), given in points 0.00025 apart; g = 8."""
+    t = np.arange(8401) * 2.5e-4
+    points = '\n'.join(f'{a:.15g}, {b:.15g}' for a, b in zip(t, 0.5 * np.sin(w * t)))
+    return run_deck(moving(SUSTAINED, points), d0=0.0, wall=0.0, k=0.0, g=8.0, v0=0.5 * w, dt=h, end=2.0)
+
+
+def check_table(checks):
+    """A table at w = 3 slows down by 4.5 at most and keeps the mass; at 6 by 18 and throws it up."""
+    for h in (0.02, 0.01, 0.005):
+        run = shaken(3.0, h)
+        time, name = run['history/time'], f'table shaken gently, h = {h}'
+        checks.close(len(run.events('release')['time']), 0, 0, f'{name}: releases')
+        checks.close(run[U], 0.5 * np.sin(3.0 * time), 1e-12, f'{name}: place')
+        impulse = np.cumsum(run['history/contact_BODY-WALL/impulse'])
+        exact = 2.0 * (8.0 * time + 1.5 * np.cos(3.0 * time) - 1.5)
+        # the table's speed is that of a piece of 0.00025
+        checks.close(impulse, exact, 2.0 * 4.5 * 2.5e-4, f'{name}: impulse')
+        checks.at_most(np.max(np.abs(run['energy/balance_error'])), 1e-11, f'{name}: balance error')
+    first = np.arcsin(8.0 / 18.0) / 6.0
+    errors, steps = [], (0.02, 0.01, 0.005, 0.0025)
+    for h in steps:
+        run = shaken(6.0, h)
+        time, name = run['history/time'], f'table shaken hard, h = {h}'
+        checks.close(run.events('release')['time'][0], first, 2.0 * h, f'{name}: throws the mass')
+        table, s = 0.5 * np.sin(6.0 * time), np.maximum(time - first, 0.0)
+        flight = 0.5 * np.sin(6.0 * first) + 3.0 * np.cos(6.0 * first) * s - 4.0 * s**2
+        early = time < first + 0.5
+        exact = np.where(s > 0.0, flight, table)
+        errors.append(np.max(np.abs(run[U] - exact)[early]))
+        checks.at_least(np.min(run[U] - table), -1e-6, f'{name}: smallest gap')
+        checks.at_most(np.max(np.abs(run['energy/balance_error'])), 1e-11, f'{name}: balance error')
+    order = np.polyfit(np.log(steps), np.log(errors), 1)[0]
+    checks.at_least(order, 0.7, f'table shaken hard: order of the flight {errors[-1]:.3g}')
+
+
 def check_errors(checks):
     run = run_deck(SPRING_MASS, expect_status=2, d0=-0.75)
     checks.true('node 1 overlaps' in run.text and '0.25' in run.text,
@@ -349,6 +385,7 @@ check_resting(checks)
 check_ball(checks)
 check_together(checks)
 check_moving_wall(checks)
+check_table(checks)
 check_errors(checks)
 check_bar(checks)
 checks.finish()
