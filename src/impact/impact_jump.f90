@@ -8,15 +8,15 @@ module impact_jump
    use structure, only: inertia_force
    use energy_ledger, only: record_impact
    use constraint_rows, only: row_gaps, row_rates, row_accelerations, row_vector, row_forces, &
-         rate_size, &
+         rate_size, gap_size, &
          wall_rates
    use impact_scene, only: scene_type, contact_motion_type, event_type, record_event, &
-         capture_speeds, event_impact, event_capture, event_limit
+         capture_speeds, gap_tolerance, event_impact, event_capture, event_limit
    implicit none
    private
 
    public :: impact_type, compliance_type, apply_impact, restart_acceleration, project_touching
-   public :: mass_compliance, set_rates, find_thrown
+   public :: mass_compliance, set_rates, follow_wall
 
    !> Opening rates below this part of the speeds are round-off.
    real(wp), parameter :: thrown_tolerance = 1.0e-9_wp
@@ -187,30 +187,44 @@ contains
       motion%motion%a = motion%motion%a + matmul(compliance%x, lambda)
    end subroutine hold_acceleration
 
-   !> Touching rows that leave the wall because it has slowed down: opening faster than round-off,
-   !> and
-   !> so fast that the forces on them do not bring them back within the step.
-   subroutine find_thrown(scene, motion, dt, thrown, error)
+   !> Gap rates of touching rows after a span in which the wall's own speed has changed: impulses that
+   !> bring them to zero, 0 <= p + I, G v + W p >= 0, complementary. A row can take back no more than
+   !> the contact impulse I that the span gave it; what still opens then is thrown off by the wall.
+   subroutine follow_wall(scene, motion, span_impulse, dt, thrown, error)
       type(scene_type), intent(inout) :: scene
-      type(contact_motion_type), intent(in) :: motion
-      real(wp), intent(in) :: dt                 !! the whole step
+      type(contact_motion_type), intent(inout) :: motion
+      real(wp), intent(in) :: span_impulse(:)    !! (n_rows) I
+      real(wp), intent(in) :: dt                 !! the whole step, for round-off
       logical, intent(out) :: thrown(:)          !! (n_rows)
       type(error_type), allocatable, intent(out) :: error
-      type(contact_motion_type) :: free
-      real(wp) :: rates(scene%rows%n), closing(scene%rows%n)
+      type(compliance_type) :: compliance
+      real(wp), dimension(scene%rows%n) :: rates, available, impulse, after
+      real(wp) :: p(count(motion%touching)), limit
+      logical :: solved
 
       thrown = .false.
       if (.not. any(motion%touching)) return
       rates = row_rates(scene%rows, motion%motion)
-      thrown = motion%touching .and. rates > thrown_tolerance*rate_size(scene%rows, motion%motion)
-      if (.not. any(thrown)) return
-      free = motion
-      free%touching = motion%touching .and. .not. thrown
-      call restart_acceleration(scene, free, error)
+      limit = thrown_tolerance*rate_size(scene%rows, motion%motion) &
+            + gap_tolerance*gap_size(scene%rows, motion%motion, dt)/dt
+      if (.not. any(motion%touching .and. abs(rates) > limit)) return
+      call mass_compliance(scene, motion%touching, compliance, error)
       if (allocated(error)) return
-      closing = max(0.0_wp, -row_accelerations(scene%rows, free%motion%a))
-      thrown = thrown .and. rates > dt*closing
-   end subroutine find_thrown
+      available = max(0.0_wp, span_impulse)
+      call solve_complementarity(compliance%w, rates(compliance%rows) &
+            - matmul(compliance%w, available(compliance%rows)), p, solved)
+      if (.not. solved) then
+         call dependent_impulses(error)
+         return
+      end if
+      impulse = 0.0_wp
+      impulse(compliance%rows) = p - available(compliance%rows)
+      motion%motion%v = motion%motion%v + matmul(compliance%x, impulse(compliance%rows))
+      after = row_rates(scene%rows, motion%motion)
+      call book_impulse(scene, motion, impulse, rates, after)
+      scene%impulse = scene%impulse + impulse
+      thrown = motion%touching .and. after > limit
+   end subroutine follow_wall
 
    !> Puts touching rows back on gap zero and gap rate zero where they are off by more than the
    !> limits, by the smallest mass-weighted change.

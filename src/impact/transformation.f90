@@ -15,7 +15,7 @@ module transformation
    use constrained_step, only: advance_smoothly
    use impact_time, only: span_type, hits_type, find_hits, locate_impact
    use impact_jump, only: impact_type, apply_impact, restart_acceleration, project_touching, &
-         mass_compliance, compliance_type, find_thrown
+         mass_compliance, compliance_type, follow_wall
    implicit none
    private
 
@@ -115,14 +115,16 @@ contains
       type(span_type), intent(in) :: span
       type(progress_type), intent(inout) :: progress
       type(error_type), allocatable, intent(out) :: error
+      real(wp) :: span_impulse(scene%rows%n)
       logical :: thrown(scene%rows%n)
 
       progress%remaining = progress%remaining - dt
+      span_impulse = dt*(motion%lambda + next%lambda)/2.0_wp
       call accept_span(scene, motion, next)
       motion = next
       motion%touching = next%touching .and. span%held
       motion%fresh = .false.
-      call find_thrown(scene, motion, progress%dt, thrown, error)
+      call follow_wall(scene, motion, span_impulse, progress%dt, thrown, error)
       if (allocated(error)) return
       if (any(thrown)) then
          call release_rows(scene, motion, thrown, progress)
