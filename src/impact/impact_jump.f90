@@ -188,7 +188,7 @@ contains
    end subroutine hold_acceleration
 
    !> Gap rates of touching rows after a span in which the wall's own speed has changed: impulses
-   !> that bring them to zero, 0 <= p + I, G v + W p >= 0, complementary. A row can take back no more
+   !> that bring them to zero, 0 <= p + I, G v + W p >= 0, complementary. A row takes back no more
    !> than the contact impulse I of the span; what still opens then is thrown off by the wall.
    subroutine follow_wall(scene, motion, span_impulse, dt, thrown, error)
       type(scene_type), intent(inout) :: scene
