@@ -8,9 +8,8 @@ SDOF = (INPUT / 'sdof' / 'sdof.inp').read_text()
 IMPACT = 'METHOD=TRANSFORMATION, RESTITUTION=<e>, BETA=1/6'
 SOLUTIONS = ('ITERATION', 'DIRECT')
 
-# d and v of the pure method at alpha = 0.3, beta = 1/4: the recurrence of one step,
-# d1 = d~/(1 + h^2/4), pulled back to (d1 - 0.5 alpha)/(1 + alpha) below the wall, a1 = 4 (d1 - d~)/h^2,
-# carried out with 40 digits.
+# d and v of the pure method at alpha = 0.3, beta = 1/4: the recurrence d1 = d~/(1 + h^2/4), below
+# the wall (d1 - 0.5 alpha)/(1 + alpha), a1 = 4 (d1 - d~)/h^2, carried out with 40 digits.
 REFERENCES = {
     0.01: {2.2: (-0.43416295437672, 0.90113110144985),
            4.0: (0.97620384982401, 0.21808433355499),
@@ -101,7 +100,8 @@ def check_restitution(checks):
         exact = oscillator(8.0, restitution=e)
         for alpha in (0.1, 0.3, 0.9):
             text = SDOF.replace(
-                IMPACT, f'METHOD=FICTITIOUS FORCE, RETURN={alpha}, RESTITUTION=<e>, SOLUTION=DIRECT')
+                IMPACT,
+                f'METHOD=FICTITIOUS FORCE, RETURN={alpha}, RESTITUTION=<e>, SOLUTION=DIRECT')
             errors, energies = [], []
             for h in steps:
                 run = run_deck(text, e=e, dt=float(h), end=8.0)
@@ -121,7 +121,7 @@ def check_restitution(checks):
 
 
 def check_solutions(checks):
-    """Same answer from iteration and direct solution; at 1 all masses hit at once, at 1.2 they do not."""
+    """Same answer both ways; from 1 all masses hit at once, with one from 1.2 they do not."""
     for mid in (1.0, 1.2):
         for alpha in (0.1, 0.3, 0.9):
             runs = [run_deck(BLOCK.replace('WAY', way), mid=mid, alpha=alpha, dt=0.01)

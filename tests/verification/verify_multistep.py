@@ -128,15 +128,18 @@ def check_static_contact(checks):
     t, d = u1(run)
     ramp = np.linspace(0.0, 1.0, 11)
     checks.close(d[:11], -np.minimum(0.5 * ramp, 0.1), 1e-15, 'pressed statically: displacement')
-    checks.close(run[FORCE][:11], np.maximum(2.0 * ramp - 0.4, 0.0), 1e-14, 'pressed: contact force')
+    checks.close(run[FORCE][:11], np.maximum(2.0 * ramp - 0.4, 0.0), 1e-14,
+                 'pressed: contact force')
     checks.close(run['history/contact_BODY-WALL/CDIS'][10], 0.0, 1e-16, 'pressed: gap')
     checks.close(d[11:111], np.full(100, -0.1), 1e-14, 'pressed, then dynamic: stays')
-    checks.close(run[FORCE][11:111], np.full(100, 1.6), 1e-13, 'pressed, then dynamic: contact force')
+    checks.close(run[FORCE][11:111], np.full(100, 1.6), 1e-13,
+                 'pressed, then dynamic: contact force')
     checks.close(run['history/node_2/RF1'][11:111], np.full(100, 0.4), 1e-13,
                  'pressed, then dynamic: reaction of the spring')
     checks.close(len(run.events()['time']), 0, 0, 'pressed: impacts until the mass comes back')
     n = np.arange(1, 101)
-    checks.close(d[111:], -0.1 * np.cos(discrete(2.0, 0.05, n)), 1e-12, 'load taken off: swings free')
+    checks.close(d[111:], -0.1 * np.cos(discrete(2.0, 0.05, n)), 1e-12,
+                 'load taken off: swings free')
     checks.at_most(balance(run), 1e-13, 'pressed: balance error')
 
     gravity = '*DLOAD\nmass, GRAV, 10, -1, 0, 0\n'
@@ -159,7 +162,7 @@ def check_one_or_two(checks):
 
 
 def ramps(points):
-    """Slopes that begin at the points of a piecewise linear curve: pairs of time and change of slope."""
+    """Times and changes of the slope of a piecewise linear curve."""
     t, a = np.array(points).T
     slopes = np.concatenate(([0.0], np.diff(a) / np.diff(t), [0.0]))
     return list(zip(t, np.diff(slopes)))
@@ -195,7 +198,7 @@ def check_base(checks):
 
 
 def check_base_motion(checks):
-    """Ground acceleration sin(3 t) in points 0.001 apart, omega = 2, displacement relative to it."""
+    """Ground acceleration sin(3 t) in points 0.001 apart, omega = 2, relative displacement."""
     t = np.linspace(0.0, 4.0, 4001)
     amplitude = '*AMPLITUDE, NAME=quake\n' + ''.join(
         f'{a:.15g}, {b:.15g}\n' for a, b in zip(t, np.sin(3.0 * t)))
@@ -282,14 +285,16 @@ def check_dissipation(checks):
 
     # a dashpot alone and with the spring
     dashpot = '*ELEMENT, TYPE=DASHPOT2, ELSET=damper\n9, 1, 2\n*DASHPOT, ELSET=damper\n1, 1\n0.6\n'
-    text = mass_deck(step('DYNAMIC, DIRECT', '<h>', 8), mass=2.0, stiffness=0.0, model=dashpot, v0=3.0)
+    text = mass_deck(step('DYNAMIC, DIRECT', '<h>', 8), mass=2.0, stiffness=0.0, model=dashpot,
+                     v0=3.0)
     run = run_deck(text, h=0.05)
     ratio = (1.0 - 0.6 * 0.05 / 4.0) / (1.0 + 0.6 * 0.05 / 4.0)
     checks.close(run['history/node_1/V1'], 3.0 * ratio**np.arange(161), 1e-13, 'dashpot: decay')
     checks.at_most(balance(run), 1e-13, 'dashpot: balance error')
     checks.close(run['energy/damping'][-1], 9.0 - run['energy/total'][-1], 1e-13, 'dashpot: energy')
     check_order(checks, 'dashpot', text, lambda s: 10.0 * (1.0 - np.exp(-0.3 * s)))
-    text = mass_deck(step('DYNAMIC, DIRECT', '<h>', 8), mass=2.0, stiffness=8.0, model=dashpot, v0=3.0)
+    text = mass_deck(step('DYNAMIC, DIRECT', '<h>', 8), mass=2.0, stiffness=8.0, model=dashpot,
+                     v0=3.0)
     check_order(checks, 'spring and dashpot', text, damped(0.15, 2.0, 3.0))
     checks.at_most(balance(run_deck(text, h=0.05)), 1e-13, 'spring and dashpot: balance error')
 
@@ -336,7 +341,8 @@ def check_amplitude_time(checks):
                                   + step('DYNAMIC, DIRECT', '<h>', 2.5, again), model=total))
         checks.close(u1(pair)[1], u1(long)[1], 1e-12, f'amplitude on total time, {name}')
     anew = run_deck(mass_deck(step('DYNAMIC, DIRECT', '<h>', 2, load)
-                              + step('DYNAMIC, DIRECT', '<h>', 2, load), model=amplitude.format('STEP')))
+                              + step('DYNAMIC, DIRECT', '<h>', 2, load),
+                              model=amplitude.format('STEP')))
     same = run_deck(mass_deck(step('DYNAMIC, DIRECT', '<h>', 4, load), model=
                               '*AMPLITUDE, NAME=wave\n0, 0, 1, 1, 2, 0, 3, 1\n4, 0\n'))
     checks.close(u1(anew)[1], u1(same)[1], 1e-12, 'amplitude on step time begins again')
@@ -350,7 +356,8 @@ def check_amplitude_time(checks):
     base = '*BOUNDARY, AMPLITUDE=wave\n2, 1, 1, 1\n'
     model = mass_deck('', model=total, held='')
     long = run_deck(model + step('DYNAMIC, DIRECT', '<h>', 4, base))
-    pair = run_deck(model + step('DYNAMIC, DIRECT', '<h>', 1.5, base) + step('DYNAMIC, DIRECT', '<h>', 2.5))
+    pair = run_deck(model + step('DYNAMIC, DIRECT', '<h>', 1.5, base)
+                    + step('DYNAMIC, DIRECT', '<h>', 2.5))
     checks.close(u1(pair)[1], u1(long)[1], 1e-12, 'base by an amplitude on total time, two steps')
 
 
