@@ -54,6 +54,8 @@ want() {
 # OpenBLAS 0.3.20 of Ubuntu 22.04 solves wrongly on processors with AVX512-BF16: not there
 blas_package() {
    if grep -qs '^VERSION_CODENAME=jammy' /etc/os-release; then
+      has_package libopenblas0-pthread &&
+         say 'warning: this OpenBLAS solves wrongly on some processors: remove it if tests fail' >&2
       echo libblas-dev
    else
       echo libopenblas-dev
