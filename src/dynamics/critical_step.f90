@@ -1,6 +1,7 @@
 !> Bounds on the highest frequencies from single elements: for shares M_e of the mass with
-!> sum M_e <= M, omega_max^2 <= max_e lambda(K_e, M_e). The mass of each freedom is shared among its
-!> elements in proportion to their diagonal stiffness.
+!> sum M_e <= M, omega_max^2 <= max_e lambda(K_e, M_e). All is folded onto the equations, constraints
+!> followed; the mass of each equation is shared among its elements in proportion to their diagonal
+!> stiffness.
 module critical_step
    use kinds, only: wp
    use small_eigen, only: largest_eigenvalue
@@ -21,23 +22,33 @@ module critical_step
       real(wp) :: step = huge(1.0_wp)       !! critical step of explicit integration
    end type critical_type
 
+   !> An element matrix on the equations behind its freedoms.
+   type :: folded_type
+      integer :: n = 0
+      integer, allocatable :: equation(:)
+      real(wp), allocatable :: matrix(:, :)
+   end type folded_type
+
 contains
 
-   !> Frequencies and explicit critical step h = 2 / (sqrt(omega^2 + (c/2)^2) + c/2) with the
-   !> damping rate c, lagged as explicit damping is (gamma = 1/2; a larger gamma by sqrt(1/(2
-   !> gamma))).
+   !> Frequencies and explicit critical step h = 2 / (sqrt(omega^2 + (c/2)^2) + c/2) with the damping
+   !> rate c, lagged as explicit damping is (gamma = 1/2; a larger gamma by sqrt(1/(2 gamma))).
    subroutine find_critical(structure, scheme, gamma, critical)
-      type(structure_type), intent(in) :: structure
+      type(structure_type), intent(in) :: structure   !! equations numbered
       integer, intent(in) :: scheme
       real(wp), intent(in) :: gamma
       type(critical_type), intent(out) :: critical
-      real(wp) :: m(structure%map%n_freedoms), k_diagonal(structure%map%n_freedoms)
-      real(wp) :: c_diagonal(structure%map%n_freedoms), total
+      real(wp), dimension(structure%map%n_eq) :: m, k_diagonal, c_diagonal
+      real(wp) :: total
       integer :: g
 
-      ! The consistent mass of a truss is at least a third of its row sums, in any motion
-      m = (row_sum_mass(structure) + 2.0_wp*structure%lumped_mass)/3.0_wp
-      call sum_diagonals(structure, scheme, k_diagonal, c_diagonal)
+      m = least_mass(structure)
+      k_diagonal = 0.0_wp
+      c_diagonal = 0.0_wp
+      do g = 1, size(structure%groups)
+         if (structure%groups(g)%scheme /= scheme) cycle
+         call sum_diagonals(structure, structure%groups(g), k_diagonal, c_diagonal)
+      end do
       do g = 1, size(structure%groups)
          if (structure%groups(g)%scheme /= scheme) cycle
          call bound_group(structure, structure%groups(g), m, k_diagonal, c_diagonal, critical)
@@ -48,97 +59,148 @@ contains
       if (total > 0.0_wp) critical%step = sqrt(1.0_wp/(2.0_wp*gamma))*2.0_wp/total
    end subroutine find_critical
 
-   !> Diagonals of the assembled K and C of a scheme, without constraints.
-   subroutine sum_diagonals(structure, scheme, k_diagonal, c_diagonal)
+   !> A diagonal mass on equations that is nowhere above the true one. The consistent mass of a truss
+   !> is at least a third of its row sums; a dependent freedom adds where it follows one master, and
+   !> is left out where it couples several.
+   pure function least_mass(structure) result(m)
       type(structure_type), intent(in) :: structure
-      integer, intent(in) :: scheme
-      real(wp), intent(out) :: k_diagonal(:), c_diagonal(:)
-      real(wp), allocatable :: k(:, :)
-      integer :: g, e, i, f
+      real(wp) :: m(structure%map%n_eq)
+      real(wp) :: on_freedoms(structure%map%n_freedoms)
+      integer :: f
 
-      k_diagonal = 0.0_wp
-      c_diagonal = 0.0_wp
-      do g = 1, size(structure%groups)
-         associate (group => structure%groups(g))
-            if (group%scheme /= scheme) cycle
-            allocate (k(size(group%lm, 1), size(group%lm, 1)))
-            do e = 1, size(group%lm, 2)
-               call group%element%largest_stiffness(e, k)
-               do i = 1, size(group%lm, 1)
-                  f = group%lm(i, e)
-                  if (f == 0) cycle
-                  k_diagonal(f) = k_diagonal(f) + k(i, i)
-                  if (size(group%damping) == 0) cycle
-                  c_diagonal(f) = c_diagonal(f) + group%damping(i, i, e)
-               end do
-            end do
-            deallocate (k)
-         end associate
+      on_freedoms = (row_sum_mass(structure) + 2.0_wp*structure%lumped_mass)/3.0_wp
+      m = 0.0_wp
+      associate (map => structure%map)
+         do f = 1, map%n_freedoms
+            if (map%first(f + 1) - map%first(f) /= 1) cycle
+            associate (i => map%first(f))
+               m(map%equation(i)) = m(map%equation(i)) + map%coefficient(i)**2*on_freedoms(f)
+            end associate
+         end do
+      end associate
+   end function least_mass
+
+   !> T^t matrix T of an element.
+   pure subroutine fold(map, lm, matrix, folded)
+      type(dof_map_type), intent(in) :: map
+      integer, intent(in) :: lm(:)               !! freedoms of the element
+      real(wp), intent(in) :: matrix(:, :)
+      type(folded_type), intent(out) :: folded
+      integer :: i, k, column, n_terms
+      real(wp), allocatable :: t(:, :)
+
+      n_terms = 0
+      do i = 1, size(lm)
+         if (lm(i) > 0) n_terms = n_terms + map%first(lm(i) + 1) - map%first(lm(i))
+      end do
+      allocate (folded%equation(n_terms), t(size(lm), n_terms))
+      t = 0.0_wp
+      do i = 1, size(lm)
+         if (lm(i) == 0) cycle
+         do k = map%first(lm(i)), map%first(lm(i) + 1) - 1
+            column = findloc(folded%equation(:folded%n), map%equation(k), dim=1)
+            if (column == 0) then
+               folded%n = folded%n + 1
+               column = folded%n
+               folded%equation(column) = map%equation(k)
+            end if
+            t(i, column) = t(i, column) + map%coefficient(k)
+         end do
+      end do
+      folded%matrix = matmul(transpose(t(:, :folded%n)), matmul(matrix, t(:, :folded%n)))
+   end subroutine fold
+
+   !> Adds a group to the diagonals of K and C.
+   subroutine sum_diagonals(structure, group, k_diagonal, c_diagonal)
+      type(structure_type), intent(in) :: structure
+      type(group_type), intent(in) :: group
+      real(wp), intent(inout) :: k_diagonal(:), c_diagonal(:)   !! (n_eq)
+      real(wp) :: k(size(group%lm, 1), size(group%lm, 1))
+      integer :: e
+
+      do e = 1, size(group%lm, 2)
+         call group%element%largest_stiffness(e, k)
+         call add_diagonal(structure%map, group%lm(:, e), k, k_diagonal)
+         if (size(group%damping) == 0) cycle
+         call add_diagonal(structure%map, group%lm(:, e), group%damping(:, :, e), c_diagonal)
       end do
    end subroutine sum_diagonals
+
+   pure subroutine add_diagonal(map, lm, matrix, diagonal)
+      type(dof_map_type), intent(in) :: map
+      integer, intent(in) :: lm(:)
+      real(wp), intent(in) :: matrix(:, :)
+      real(wp), intent(inout) :: diagonal(:)
+      type(folded_type) :: folded
+      integer :: i
+
+      call fold(map, lm, matrix, folded)
+      do i = 1, folded%n
+         diagonal(folded%equation(i)) = diagonal(folded%equation(i)) + folded%matrix(i, i)
+      end do
+   end subroutine add_diagonal
 
    !> Raises the bounds (omega squared here) by the elements of a group.
    subroutine bound_group(structure, group, m, k_diagonal, c_diagonal, critical)
       type(structure_type), intent(in) :: structure
       type(group_type), intent(in) :: group
-      real(wp), intent(in) :: m(:), k_diagonal(:), c_diagonal(:)
+      real(wp), intent(in) :: m(:), k_diagonal(:), c_diagonal(:)   !! (n_eq)
       type(critical_type), intent(inout) :: critical
-      real(wp), allocatable :: k(:, :)
-      real(wp) :: lambda
-      integer :: e, f
+      type(folded_type) :: folded
+      real(wp) :: k(size(group%lm, 1), size(group%lm, 1)), lambda
+      integer :: e
 
-      allocate (k(size(group%lm, 1), size(group%lm, 1)))
       do e = 1, size(group%lm, 2)
          call group%element%largest_stiffness(e, k)
-         f = massless(structure%map, group%lm(:, e), k, m)
-         if (f > 0) critical%massless_freedom = f
-         lambda = element_bound(group%lm(:, e), k, m, k_diagonal)
+         call fold(structure%map, group%lm(:, e), k, folded)
+         call bound_element(structure%map, folded, m, k_diagonal, lambda, critical%massless_freedom)
          if (lambda > critical%omega) then
             critical%omega = lambda
             critical%element = group%member(e)
          end if
          if (size(group%damping) == 0) cycle
-         f = massless(structure%map, group%lm(:, e), group%damping(:, :, e), m)
-         if (f > 0) critical%massless_freedom = f
-         critical%damping_rate = max(critical%damping_rate, &
-               element_bound(group%lm(:, e), group%damping(:, :, e), m, c_diagonal))
+         call fold(structure%map, group%lm(:, e), group%damping(:, :, e), folded)
+         call bound_element(structure%map, folded, m, c_diagonal, lambda, critical%massless_freedom)
+         critical%damping_rate = max(critical%damping_rate, lambda)
       end do
    end subroutine bound_group
 
-   !> A freedom that the matrix acts on, that is free and has no mass, 0 if there is none.
-   pure function massless(map, lm, matrix, m) result(freedom)
+   !> Largest eigenvalue of a folded element matrix on its share of the mass; a freedom that it acts on
+   !> and that has no mass is named.
+   pure subroutine bound_element(map, folded, m, diagonal, lambda, massless_freedom)
       type(dof_map_type), intent(in) :: map
-      integer, intent(in) :: lm(:)
-      real(wp), intent(in) :: matrix(:, :), m(:)
-      integer :: freedom
-      integer :: i
-
-      freedom = 0
-      do i = 1, size(lm)
-         if (lm(i) == 0 .or. .not. matrix(i, i) > 0.0_wp) cycle
-         if (map%id(map%dof(lm(i)), map%node(lm(i))) == 0) cycle
-         if (.not. m(lm(i)) > 0.0_wp) freedom = lm(i)
-      end do
-   end function massless
-
-   !> Largest eigenvalue of an element matrix on its share of the mass.
-   pure function element_bound(lm, matrix, m, diagonal) result(lambda)
-      integer, intent(in) :: lm(:)
-      real(wp), intent(in) :: matrix(:, :)
-      real(wp), intent(in) :: m(:), diagonal(:)  !! (n_freedoms) mass, assembled diagonal
-      real(wp) :: lambda
-      integer :: rows(size(lm)), n, i
-      real(wp) :: share(size(lm))
+      type(folded_type), intent(in) :: folded
+      real(wp), intent(in) :: m(:), diagonal(:)  !! (n_eq) mass, assembled diagonal
+      real(wp), intent(out) :: lambda
+      integer, intent(inout) :: massless_freedom
+      integer :: rows(folded%n), n, i
+      real(wp) :: share(folded%n)
 
       n = 0
-      do i = 1, size(lm)
-         if (lm(i) == 0 .or. .not. matrix(i, i) > 0.0_wp) cycle
-         if (.not. m(lm(i)) > 0.0_wp) cycle
-         n = n + 1
-         rows(n) = i
-         share(n) = m(lm(i))*matrix(i, i)/diagonal(lm(i))
+      do i = 1, folded%n
+         associate (equation => folded%equation(i))
+            if (.not. folded%matrix(i, i) > 0.0_wp) cycle
+            if (.not. m(equation) > 0.0_wp) then
+               massless_freedom = freedom_of(map, equation)
+               cycle
+            end if
+            n = n + 1
+            rows(n) = i
+            share(n) = m(equation)*folded%matrix(i, i)/diagonal(equation)
+         end associate
       end do
-      lambda = largest_eigenvalue(matrix(rows(:n), rows(:n)), share(:n))
-   end function element_bound
+      lambda = largest_eigenvalue(folded%matrix(rows(:n), rows(:n)), share(:n))
+   end subroutine bound_element
+
+   !> The freedom that an equation stands for.
+   pure function freedom_of(map, equation) result(freedom)
+      type(dof_map_type), intent(in) :: map
+      integer, intent(in) :: equation
+      integer :: freedom
+
+      do freedom = 1, map%n_freedoms
+         if (map%id(map%dof(freedom), map%node(freedom)) == equation) return
+      end do
+   end function freedom_of
 
 end module critical_step

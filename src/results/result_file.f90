@@ -129,6 +129,12 @@ contains
       if (allocated(error)) return
       call self%file%write_dataset('/model/deck', deck_text(model%source), &
             'the deck, included files behind it', error)
+      if (allocated(error)) return
+      call self%file%write_dataset('/model/node_id', model%nodes%id(:model%nodes%n), &
+            'ids of the nodes in the deck, in the order of the points', error)
+      if (allocated(error)) return
+      call self%file%write_dataset('/model/element_id', model%elements%id(:model%elements%n), &
+            'ids of the elements in the deck, in the order of the cells', error)
       if (allocated(error) .or. size(model%rigid_surfaces) == 0) return
       allocate (planes(6, size(model%rigid_surfaces)))
       do i = 1, size(planes, 2)

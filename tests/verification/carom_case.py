@@ -48,7 +48,8 @@ def run_deck(deck, command='run', expect_status=0, **definitions):
     if command == 'run':
         words += ['-o', str(result), '--quiet']
     for name, value in definitions.items():
-        words += ['--define', f'{name}={value!r}' if isinstance(value, float) else f'{name}={value}']
+        words += ['--define', f'{name}={float(value)!r}' if isinstance(value, float)
+                  else f'{name}={value}']
     done = subprocess.run(words, capture_output=True, text=True, timeout=600,
                           env={**os.environ, 'OPENBLAS_NUM_THREADS': '1'})
     if done.returncode != expect_status:
