@@ -1,5 +1,6 @@
 !> Bounds on the highest frequencies from single elements: for shares M_e of the mass with
-!> sum M_e <= M, omega_max^2 <= max_e lambda(K_e, M_e). All is folded onto the equations, constraints
+!> sum M_e <= M, omega_max^2 <= max_e lambda(K_e, M_e). All is folded onto the equations,
+!> constraints
 !> followed; the mass of each equation is shared among its elements in proportion to their diagonal
 !> stiffness.
 module critical_step
@@ -31,7 +32,8 @@ module critical_step
 
 contains
 
-   !> Frequencies and explicit critical step h = 2 / (sqrt(omega^2 + (c/2)^2) + c/2) with the damping
+   !> Frequencies and explicit critical step h = 2 / (sqrt(omega^2 + (c/2)^2) + c/2) with the
+   !> damping
    !> rate c, lagged as explicit damping is (gamma = 1/2; a larger gamma by sqrt(1/(2 gamma))).
    subroutine find_critical(structure, scheme, gamma, critical)
       type(structure_type), intent(in) :: structure   !! equations numbered
@@ -59,7 +61,8 @@ contains
       if (total > 0.0_wp) critical%step = sqrt(1.0_wp/(2.0_wp*gamma))*2.0_wp/total
    end subroutine find_critical
 
-   !> A diagonal mass on equations that is nowhere above the true one. The consistent mass of a truss
+   !> A diagonal mass on equations that is nowhere above the true one. The consistent mass of a
+   !> truss
    !> is at least a third of its row sums; a dependent freedom adds where it follows one master, and
    !> is left out where it couples several.
    pure function least_mass(structure) result(m)
@@ -165,7 +168,8 @@ contains
       end do
    end subroutine bound_group
 
-   !> Largest eigenvalue of a folded element matrix on its share of the mass; a freedom that it acts on
+   !> Largest eigenvalue of a folded element matrix on its share of the mass; a freedom that it
+   !> acts on
    !> and that has no mass is named.
    pure subroutine bound_element(map, folded, m, diagonal, lambda, massless_freedom)
       type(dof_map_type), intent(in) :: map
