@@ -6,7 +6,7 @@ module effective_matrix
    use skyline_matrix, only: profile_type, new_profile, couple, skyline_type, new_skyline
    use element_groups, only: group_type
    use dof_map, only: dof_map_type
-   use structure, only: structure_type, gather
+   use structure, only: structure_type, gather, group_history
    implicit none
    private
 
@@ -81,10 +81,11 @@ contains
 
    !> c_mass M + c_damping C + c_stiffness K, damping and tangent stiffness of implicit groups only.
    !> Without stiffness and damping, massless equations get a unit diagonal.
-   pure subroutine assemble_effective(structure, profile, d, factors, matrix)
+   pure subroutine assemble_effective(structure, profile, d, history, factors, matrix)
       type(structure_type), intent(in) :: structure
       type(profile_type), intent(in) :: profile
       real(wp), intent(in) :: d(:)               !! (n_freedoms) where the tangent is taken
+      real(wp), intent(in) :: history(:)         !! (n_history) last accepted
       real(wp), intent(in) :: factors(3)         !! c_mass, c_damping, c_stiffness
       type(skyline_type), intent(out) :: matrix
       integer :: f, g, j
@@ -94,7 +95,7 @@ contains
          call add_pair(structure%map, matrix, f, f, factors(1)*structure%lumped_mass(f))
       end do
       do g = 1, size(structure%groups)
-         call add_group(structure, structure%groups(g), d, factors, matrix)
+         call add_group(structure, structure%groups(g), d, history, factors, matrix)
       end do
       if (abs(factors(2)) + abs(factors(3)) > 0.0_wp) return
       do j = 1, matrix%n
@@ -102,18 +103,19 @@ contains
       end do
    end subroutine assemble_effective
 
-   pure subroutine add_group(structure, group, d, factors, matrix)
+   pure subroutine add_group(structure, group, d, history, factors, matrix)
       type(structure_type), intent(in) :: structure
       type(group_type), intent(in) :: group
-      real(wp), intent(in) :: d(:), factors(3)
+      real(wp), intent(in) :: d(:), history(:), factors(3)
       type(skyline_type), intent(inout) :: matrix
-      real(wp), allocatable :: local(:, :), total(:, :), part(:, :)
+      real(wp), allocatable :: local(:, :), total(:, :), part(:, :), memory(:, :)
       integer :: e, n
 
       if (group%lumped .and. .not. has_implicit_matrix(group)) return
       n = size(group%lm, 1)
       allocate (local(n, size(group%lm, 2)), total(n, n), part(n, n))
       call gather(group, d, local)
+      memory = group_history(group, history)
       do e = 1, size(group%lm, 2)
          total = 0.0_wp
          if (.not. group%lumped) then
@@ -121,7 +123,7 @@ contains
             total = factors(1)*part
          end if
          if (has_implicit_matrix(group)) then
-            call group%element%stiffness(e, local(:, e), part)
+            call group%element%stiffness(e, local(:, e), memory(:, e), part)
             total = total + factors(3)*part
             if (size(group%damping) > 0) total = total + factors(2)*group%damping(:, :, e)
          end if

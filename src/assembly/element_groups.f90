@@ -28,6 +28,7 @@ module element_groups
       integer, allocatable :: member(:)          !! (n) element indices in the model
       integer, allocatable :: ien(:, :)          !! (n_nodes, n) node indices
       integer, allocatable :: lm(:, :)           !! (3 n_nodes, n) freedoms, 0: does not exist
+      integer :: history_start = 0               !! variables before this group's in the history
       integer :: scheme = scheme_implicit
       logical :: lumped = .true.
       real(wp), allocatable :: damping(:, :, :)  !! (3 n_nodes, 3 n_nodes, n), empty without any

@@ -14,7 +14,7 @@ module structure
 
    public :: structure_type, new_structure
    public :: elastic_force, damping_force, inertia_force, gather
-   public :: strain_energy, freedom_name, row_sum_mass
+   public :: strain_energy, plastic_work, group_history, freedom_name, row_sum_mass
 
    !> Everything that does not change from step to step, and the numbering that may.
    type :: structure_type
@@ -23,6 +23,7 @@ module structure
       real(wp), allocatable :: lumped_mass(:)    !! (n_freedoms) of the lumped groups
       logical :: has_consistent_mass = .false.
       logical :: is_linear = .true.
+      integer :: n_history = 0                   !! history variables of all elements
       integer, allocatable :: node_id(:)         !! the deck's node ids, for messages
    end type structure_type
 
@@ -50,6 +51,9 @@ contains
          call locate(self%groups(g), self%map)
          self%has_consistent_mass = self%has_consistent_mass .or. .not. self%groups(g)%lumped
          self%is_linear = self%is_linear .and. self%groups(g)%element%linear
+         self%groups(g)%history_start = self%n_history
+         self%n_history = self%n_history &
+               + self%groups(g)%element%n_history*self%groups(g)%element%n_elements
       end do
       call lump_mass(self)
       call check_freedoms(self, model, error)
@@ -130,17 +134,16 @@ contains
       type(structure_type), intent(in) :: self
       logical, intent(out) :: carried(:)
       integer :: g, e, i
-      real(wp), allocatable :: k(:, :), m(:, :), c(:, :), zero(:)
+      real(wp), allocatable :: k(:, :), m(:, :), c(:, :)
       logical :: entry
 
       carried = .false.
       do g = 1, size(self%groups)
          associate (group => self%groups(g))
             i = size(group%lm, 1)
-            allocate (k(i, i), m(i, i), c(i, i), zero(i))
-            zero = 0.0_wp
+            allocate (k(i, i), m(i, i), c(i, i))
             do e = 1, size(group%member)
-               call group%element%stiffness(e, zero, k)
+               call group%element%largest_stiffness(e, k)
                call group%element%damping(e, c)
                call group%element%mass(e, group%lumped, m)
                do i = 1, size(group%lm, 1)
@@ -149,7 +152,7 @@ contains
                   if (group%lm(i, e) > 0 .and. entry) carried(group%lm(i, e)) = .true.
                end do
             end do
-            deallocate (k, m, c, zero)
+            deallocate (k, m, c)
          end associate
       end do
    end subroutine find_carried
@@ -184,23 +187,40 @@ contains
       end do
    end subroutine scatter
 
-   !> Adds S_elastic(d) of the groups of a scheme.
-   pure subroutine elastic_force(self, scheme, d, force)
+   !> The history of a group's elements in the history of all.
+   pure function group_history(group, history) result(part)
+      type(group_type), intent(in) :: group
+      real(wp), intent(in) :: history(:)         !! of all elements
+      real(wp) :: part(group%element%n_history, group%element%n_elements)
+
+      part = reshape(history(group%history_start + 1:group%history_start + size(part)), shape(part))
+   end function group_history
+
+   !> Adds S(d) of the groups of a scheme and updates their history from the last accepted one.
+   pure subroutine elastic_force(self, scheme, d, history, force, updated)
       type(structure_type), intent(in) :: self
       integer, intent(in) :: scheme              !! scheme_implicit or scheme_explicit
       real(wp), intent(in) :: d(:)               !! (n_freedoms)
+      real(wp), intent(in) :: history(:)         !! (n_history) last accepted
       real(wp), intent(inout) :: force(:)        !! (n_freedoms)
-      real(wp), allocatable :: local(:, :), local_force(:, :)
-      integer :: g
+      real(wp), intent(inout) :: updated(:)      !! (n_history) at d, of this scheme's groups
+      real(wp), allocatable :: local(:, :), local_force(:, :), local_history(:, :)
+      integer :: g, n
 
       do g = 1, size(self%groups)
-         if (self%groups(g)%scheme /= scheme) cycle
-         allocate (local(size(self%groups(g)%lm, 1), size(self%groups(g)%lm, 2)))
-         allocate (local_force, mold=local)
-         call gather(self%groups(g), d, local)
-         call self%groups(g)%element%internal_force(local, local_force)
-         call scatter(self%groups(g), local_force, force)
-         deallocate (local, local_force)
+         associate (group => self%groups(g))
+            if (group%scheme /= scheme) cycle
+            allocate (local(size(group%lm, 1), size(group%lm, 2)))
+            allocate (local_force, mold=local)
+            allocate (local_history(group%element%n_history, group%element%n_elements))
+            call gather(group, d, local)
+            call group%element%internal_force(local, group_history(group, history), local_force, &
+                  local_history)
+            call scatter(group, local_force, force)
+            n = size(local_history)
+            updated(group%history_start + 1:group%history_start + n) = reshape(local_history, [n])
+            deallocate (local, local_force, local_history)
+         end associate
       end do
    end subroutine elastic_force
 
@@ -265,9 +285,10 @@ contains
    end function row_sum_mass
 
    !> Strain energy of all groups.
-   pure function strain_energy(self, d) result(energy)
+   pure function strain_energy(self, d, history) result(energy)
       type(structure_type), intent(in) :: self
       real(wp), intent(in) :: d(:)               !! (n_freedoms)
+      real(wp), intent(in) :: history(:)         !! (n_history) at d
       real(wp) :: energy
       real(wp), allocatable :: local(:, :)
       integer :: g
@@ -276,10 +297,24 @@ contains
       do g = 1, size(self%groups)
          allocate (local(size(self%groups(g)%lm, 1), size(self%groups(g)%lm, 2)))
          call gather(self%groups(g), d, local)
-         energy = energy + self%groups(g)%element%strain_energy(local)
+         energy = energy + self%groups(g)%element%strain_energy(local, &
+               group_history(self%groups(g), history))
          deallocate (local)
       end do
    end function strain_energy
+
+   !> Energy taken by plastic deformation, all groups.
+   pure function plastic_work(self, history) result(work)
+      type(structure_type), intent(in) :: self
+      real(wp), intent(in) :: history(:)         !! (n_history)
+      real(wp) :: work
+      integer :: g
+
+      work = 0.0_wp
+      do g = 1, size(self%groups)
+         work = work + self%groups(g)%element%plastic_work(group_history(self%groups(g), history))
+      end do
+   end function plastic_work
 
    !> "node 7, freedom 2", for messages.
    pure function freedom_name(self, f) result(name)

@@ -56,11 +56,12 @@ contains
 
    !> Makes c_m M + c_c C + c_k K the matrix that `solve` uses, from the store if it is there.
    !> A vanishing pivot is an error that names the node and freedom.
-   subroutine prepare(self, structure, profile, d, factors, error)
+   subroutine prepare(self, structure, profile, d, history, factors, error)
       class(effective_system_type), intent(inout) :: self
       type(structure_type), intent(in) :: structure
       type(profile_type), intent(in) :: profile
       real(wp), intent(in) :: d(:)                !! (n_freedoms) where the tangent is taken
+      real(wp), intent(in) :: history(:)          !! (n_history) last accepted
       real(wp), intent(in) :: factors(3)          !! c_m, c_c, c_k
       type(error_type), allocatable, intent(out) :: error
       type(ldlt_report_type) :: report
@@ -75,7 +76,7 @@ contains
       end do
       self%current = minloc(self%slots%last_use, dim=1)
       associate (slot => self%slots(self%current))
-         call assemble_effective(structure, profile, d, factors, slot%matrix)
+         call assemble_effective(structure, profile, d, history, factors, slot%matrix)
          slot%factors = -1.0_wp
          if (.not. slot%matrix%is_diagonal()) self%n_factorizations = self%n_factorizations + 1
          call factorize(slot%matrix, report)

@@ -4,7 +4,7 @@
 module energy_ledger
    use kinds, only: wp
    use mesh, only: scheme_implicit, scheme_explicit
-   use structure, only: strain_energy, damping_force, inertia_force
+   use structure, only: strain_energy, plastic_work, damping_force, inertia_force
    use external_load, only: load_at
    use motion_state, only: state_type
    use equation_of_motion, only: system_type
@@ -96,7 +96,8 @@ contains
       type(state_type), intent(in) :: state
 
       self%kinetic = dot_product(state%v, inertia_force(system%structure, state%v))/2.0_wp
-      self%strain = strain_energy(system%structure, state%d)
+      self%strain = strain_energy(system%structure, state%d, state%history)
+      self%plastic = plastic_work(system%structure, state%history)
       self%total = self%kinetic + self%strain
       self%balance_error = self%total + self%damping + self%plastic + self%friction &
             + self%impact_loss - self%external_work - self%initial

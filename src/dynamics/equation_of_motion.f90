@@ -72,38 +72,41 @@ contains
    function fixed_force(self, state, predictor) result(force)
       type(system_type), intent(in) :: self
       type(state_type), intent(in) :: state      !! at the start of the step
-      type(state_type), intent(in) :: predictor
+      type(state_type), intent(inout) :: predictor   !! gets the history of explicit elements
       real(wp) :: force(self%structure%map%n_freedoms)
       real(wp) :: alpha
 
       alpha = merge(0.0_wp, self%newmark%alpha, self%static)
       force = load_at(self%loads, size(force), predictor%t) &
-            - resisting_force(self, scheme_explicit, predictor)
+            - resisting_force(self, scheme_explicit, predictor, state%history)
       if (.not. abs(alpha) > 0.0_wp) return
       force = (1.0_wp + alpha)*force - alpha*force_balance(self, state)
    end function fixed_force
 
    !> psi = fixed - (1 + alpha) S_I(d, v) - M a, on freedoms.
-   function residual(self, fixed, trial) result(psi)
+   function residual(self, fixed, history, trial) result(psi)
       type(system_type), intent(in) :: self
       real(wp), intent(in) :: fixed(:)           !! from `fixed_force`
-      type(state_type), intent(in) :: trial
+      real(wp), intent(in) :: history(:)         !! at the start of the step
+      type(state_type), intent(inout) :: trial   !! gets the history of implicit elements
       real(wp) :: psi(size(fixed))
 
       psi = fixed - (1.0_wp + merge(0.0_wp, self%newmark%alpha, self%static)) &
-            *resisting_force(self, scheme_implicit, trial)
+            *resisting_force(self, scheme_implicit, trial, history)
       if (.not. self%static) psi = psi - inertia_force(self%structure, trial%a)
    end function residual
 
    !> S(d) + C v of the groups of a scheme; no damping in a static step.
-   function resisting_force(self, scheme, state) result(force)
+   !> The elements' history goes from the one given to that of the state.
+   function resisting_force(self, scheme, state, history) result(force)
       type(system_type), intent(in) :: self
       integer, intent(in) :: scheme
-      type(state_type), intent(in) :: state
+      type(state_type), intent(inout) :: state
+      real(wp), intent(in) :: history(:)         !! last accepted
       real(wp) :: force(self%structure%map%n_freedoms)
 
       force = 0.0_wp
-      call elastic_force(self%structure, scheme, state%d, force)
+      call elastic_force(self%structure, scheme, state%d, history, force, state%history)
       if (.not. self%static) call damping_force(self%structure, scheme, state%v, force)
    end function resisting_force
 
@@ -111,18 +114,21 @@ contains
    function force_balance(self, state) result(force)
       type(system_type), intent(in) :: self
       type(state_type), intent(in) :: state
+      type(state_type) :: at
       real(wp) :: force(self%structure%map%n_freedoms)
 
+      at = state
       force = load_at(self%loads, size(force), state%t) &
-            - resisting_force(self, scheme_implicit, state) &
-            - resisting_force(self, scheme_explicit, state)
+            - resisting_force(self, scheme_implicit, at, state%history) &
+            - resisting_force(self, scheme_explicit, at, state%history)
    end function force_balance
 
    !> Makes M + (1 + alpha)(gamma h C + beta h^2 K) ready, or K in a static step.
-   subroutine prepare_motion(self, dt, beta, d, error)
+   subroutine prepare_motion(self, dt, beta, d, history, error)
       type(system_type), intent(inout) :: self
       real(wp), intent(in) :: dt, beta
       real(wp), intent(in) :: d(:)               !! where the tangent is taken
+      real(wp), intent(in) :: history(:)         !! last accepted
       type(error_type), allocatable, intent(out) :: error
       real(wp) :: factors(3)
 
@@ -130,7 +136,7 @@ contains
       factors(2:3) = (1.0_wp + self%newmark%alpha)*factors(2:3)
       if (self%static) factors = [0.0_wp, 0.0_wp, 1.0_wp]
       if (.not. self%structure%is_linear) call self%matrices%forget()
-      call self%matrices%prepare(self%structure, self%profile, d, factors, error)
+      call self%matrices%prepare(self%structure, self%profile, d, history, factors, error)
    end subroutine prepare_motion
 
    !> Motion of the freedoms (acceleration, or displacement in a static step) under forces on them,
@@ -150,10 +156,12 @@ contains
    subroutine prepare_mass(self, error)
       type(system_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: d(self%structure%map%n_freedoms)
+      real(wp) :: d(self%structure%map%n_freedoms), history(self%structure%n_history)
 
       d = 0.0_wp
-      call self%matrices%prepare(self%structure, self%profile, d, [1.0_wp, 0.0_wp, 0.0_wp], error)
+      history = 0.0_wp
+      call self%matrices%prepare(self%structure, self%profile, d, history, &
+            [1.0_wp, 0.0_wp, 0.0_wp], error)
    end subroutine prepare_mass
 
    !> M^-1 force on freedoms, nothing on massless ones. `prepare_mass` comes first.

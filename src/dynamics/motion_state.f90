@@ -10,6 +10,7 @@ module motion_state
    type :: state_type
       real(wp) :: t = 0.0_wp
       real(wp), allocatable :: d(:), v(:), a(:)   !! (n_freedoms)
+      real(wp), allocatable :: history(:)         !! (n_history) memory of the elements
    end type state_type
 
    !> Parameters of the time integration: Newmark's and that of Hilber, Hughes and Taylor.
@@ -33,6 +34,7 @@ contains
       trial%d = state%d + dt*state%v + dt**2/2.0_wp*(1.0_wp - 2.0_wp*newmark%beta)*state%a
       trial%v = state%v + dt*(1.0_wp - newmark%gamma)*state%a
       trial%a = 0.0_wp*state%a
+      trial%history = state%history
    end subroutine predict
 
    !> d = d~ + beta h^2 a,  v = v~ + gamma h a, for a change of the acceleration.

@@ -67,10 +67,10 @@ contains
    end function uses
 
    !> k b bt with the tangent k = dF/du.
-   pure subroutine stiffness(self, e, d, matrix)
+   pure subroutine stiffness(self, e, d, history, matrix)
       class(spring_type), intent(in) :: self
       integer, intent(in) :: e
-      real(wp), intent(in) :: d(:)
+      real(wp), intent(in) :: d(:), history(:)
       real(wp), intent(out) :: matrix(:, :)
       real(wp) :: k, force
 
@@ -95,13 +95,14 @@ contains
       call rank_one(k, self%b(:, e), matrix)
    end subroutine largest_stiffness
 
-   pure subroutine internal_force(self, d, force)
+   pure subroutine internal_force(self, d, history, force, updated)
       class(spring_type), intent(in) :: self
-      real(wp), intent(in) :: d(:, :)
-      real(wp), intent(out) :: force(:, :)
+      real(wp), intent(in) :: d(:, :), history(:, :)
+      real(wp), intent(out) :: force(:, :), updated(:, :)
       real(wp) :: elongation(self%n_elements), axial(self%n_elements), k
       integer :: e
 
+      updated = history
       elongation = elongations(self%b, d)
       if (self%linear) then
          axial = self%k*elongation
@@ -113,9 +114,9 @@ contains
       call spread(self%b, axial, force)
    end subroutine internal_force
 
-   pure function strain_energy(self, d) result(energy)
+   pure function strain_energy(self, d, history) result(energy)
       class(spring_type), intent(in) :: self
-      real(wp), intent(in) :: d(:, :)
+      real(wp), intent(in) :: d(:, :), history(:, :)
       real(wp) :: energy
       real(wp) :: elongation(self%n_elements)
       integer :: e

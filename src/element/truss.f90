@@ -1,7 +1,7 @@
 !> T2D2 and T3D2: straight two-node bar, linear elastic, small displacements.
 module truss
    use kinds, only: wp
-   use element_interface, only: element_type
+   use element_interface, only: element_type, recovered_stress, recovered_strain, recovered_energy
    use axial_kinematics, only: rank_one, elongations, spread
    implicit none
    private
@@ -30,7 +30,7 @@ module truss
       procedure :: mass
       procedure :: internal_force
       procedure :: strain_energy
-      procedure :: stress
+      procedure :: recover
    end type truss_type
 
 contains
@@ -45,7 +45,8 @@ contains
 
       self%n_nodes = 2
       self%n_elements = size(length)
-      self%has_stress = .true.
+      self%n_points = 1
+      self%n_stresses = 1
       self%b = b
       self%length = length
       self%material = material
@@ -62,10 +63,10 @@ contains
    end function uses
 
    !> E A / L b bt.
-   pure subroutine stiffness(self, e, d, matrix)
+   pure subroutine stiffness(self, e, d, history, matrix)
       class(truss_type), intent(in) :: self
       integer, intent(in) :: e
-      real(wp), intent(in) :: d(:)
+      real(wp), intent(in) :: d(:), history(:)
       real(wp), intent(out) :: matrix(:, :)
 
       call rank_one(self%material%young*self%material%area/self%length(e), self%b(:, e), matrix)
@@ -105,34 +106,38 @@ contains
       end do
    end subroutine mass
 
-   pure subroutine internal_force(self, d, force)
+   pure subroutine internal_force(self, d, history, force, updated)
       class(truss_type), intent(in) :: self
-      real(wp), intent(in) :: d(:, :)
-      real(wp), intent(out) :: force(:, :)
+      real(wp), intent(in) :: d(:, :), history(:, :)
+      real(wp), intent(out) :: force(:, :), updated(:, :)
 
+      updated = history
       call spread(self%b, self%material%young*self%material%area*elongations(self%b, d) &
             /self%length, force)
    end subroutine internal_force
 
-   pure function strain_energy(self, d) result(energy)
+   pure function strain_energy(self, d, history) result(energy)
       class(truss_type), intent(in) :: self
-      real(wp), intent(in) :: d(:, :)
+      real(wp), intent(in) :: d(:, :), history(:, :)
       real(wp) :: energy
 
       energy = self%material%young*self%material%area &
             *sum(elongations(self%b, d)**2/self%length)/2.0_wp
    end function strain_energy
 
-   !> Axial stress E strain, strain, strain energy density.
-   pure function stress(self, e, d) result(values)
+   !> Axial stress E strain, strain, strain energy density; axial is direction 1.
+   pure subroutine recover(self, e, d, history, values)
       class(truss_type), intent(in) :: self
       integer, intent(in) :: e
-      real(wp), intent(in) :: d(:)
-      real(wp) :: values(3)
+      real(wp), intent(in) :: d(:), history(:)
+      real(wp), intent(out) :: values(:, :)
+      real(wp) :: strain
 
-      values(2) = dot_product(self%b(:, e), d)/self%length(e)
-      values(1) = self%material%young*values(2)
-      values(3) = values(1)*values(2)/2.0_wp
-   end function stress
+      strain = dot_product(self%b(:, e), d)/self%length(e)
+      values = 0.0_wp
+      values(recovered_stress, 1) = self%material%young*strain
+      values(recovered_strain, 1) = strain
+      values(recovered_energy, 1) = self%material%young*strain**2/2.0_wp
+   end subroutine recover
 
 end module truss

@@ -47,8 +47,8 @@ contains
       fixed = fixed_force(scene%system, from%motion, to%motion)
       reference = 0.0_wp
       do iteration = 1, scene%system%max_iterations
-         psi = residual(scene%system, fixed, to%motion)
-         call prepare_motion(scene%system, dt, beta, to%motion%d, error)
+         psi = residual(scene%system, fixed, from%motion%history, to%motion)
+         call prepare_motion(scene%system, dt, beta, to%motion%d, from%motion%history, error)
          if (allocated(error)) return
          delta = solve_motion(scene%system, psi)
          call add_contact(scene, to, delta, error, held)
@@ -59,7 +59,7 @@ contains
          if (scene%system%structure%is_linear) return
          scene%n_iterations = scene%n_iterations + 1
          reference = max(reference, norm2(psi), norm2(fixed))
-         if (has_converged(scene, fixed, to, delta, reference)) return
+         if (has_converged(scene, fixed, from, to, delta, reference)) return
       end do
       call not_converged(scene, to%motion%t, error)
    end subroutine advance_smoothly
@@ -98,16 +98,18 @@ contains
    end subroutine add_contact
 
    !> Newton's method has converged when both the correction and the residual are small.
-   function has_converged(scene, fixed, to, delta, reference) result(converged)
+   function has_converged(scene, fixed, from, to, delta, reference) result(converged)
       type(scene_type), intent(in) :: scene
       real(wp), intent(in) :: fixed(:), delta(:), reference
-      type(contact_motion_type), intent(in) :: to
+      type(contact_motion_type), intent(in) :: from
+      type(contact_motion_type), intent(inout) :: to   !! gets the history at its displacements
       logical :: converged
       real(wp) :: psi(size(fixed)), motion
 
       motion = norm2(to%motion%a)
       if (scene%system%static) motion = norm2(to%motion%d)
-      psi = residual(scene%system, fixed, to%motion) + row_forces(scene%rows, to%lambda, size(psi))
+      psi = residual(scene%system, fixed, from%motion%history, to%motion) &
+            + row_forces(scene%rows, to%lambda, size(psi))
       converged = norm2(delta) <= scene%system%tolerance*motion .and. &
             norm2(reduce(scene%system%structure%map, psi)) <= scene%system%tolerance*reference
       converged = converged .or. .not. (motion > 0.0_wp .or. reference > 0.0_wp)
@@ -153,8 +155,8 @@ contains
       fixed = fixed_force(scene%system, from%motion, to%motion)
       reference = 0.0_wp
       do iteration = 1, scene%system%max_iterations
-         psi = residual(scene%system, fixed, to%motion)
-         call prepare_motion(scene%system, dt, 0.25_wp, to%motion%d, error)
+         psi = residual(scene%system, fixed, from%motion%history, to%motion)
+         call prepare_motion(scene%system, dt, 0.25_wp, to%motion%d, from%motion%history, error)
          if (allocated(error)) return
          delta = solve_motion(scene%system, psi)
          call add_static_contact(scene, to, delta, error)
@@ -163,7 +165,7 @@ contains
          if (scene%system%structure%is_linear) return
          scene%n_iterations = scene%n_iterations + 1
          reference = max(reference, norm2(psi), norm2(fixed))
-         if (has_converged(scene, fixed, to, delta, reference)) return
+         if (has_converged(scene, fixed, from, to, delta, reference)) return
       end do
       call not_converged(scene, to%motion%t, error)
    end subroutine solve_statically

@@ -75,14 +75,15 @@ module impact_scene
 contains
 
    !> A motion at rest at the origin, nothing in contact.
-   pure subroutine new_contact_motion(self, n_freedoms, n_rows)
+   pure subroutine new_contact_motion(self, n_freedoms, n_rows, n_history)
       type(contact_motion_type), intent(out) :: self
-      integer, intent(in) :: n_freedoms, n_rows
+      integer, intent(in) :: n_freedoms, n_rows, n_history
       integer :: i
 
       self%motion%d = [(0.0_wp, i=1, n_freedoms)]
       self%motion%v = self%motion%d
       self%motion%a = self%motion%d
+      self%motion%history = [(0.0_wp, i=1, n_history)]
       self%lambda = [(0.0_wp, i=1, n_rows)]
       self%entry_speed = self%lambda
       self%touching = [(.false., i=1, n_rows)]

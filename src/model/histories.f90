@@ -7,12 +7,17 @@ module histories
    private
 
    public :: amplitude_type, boundary_type, nodal_value_type, gravity_type, base_motion_type
-   public :: equation_type
+   public :: equation_type, distributed_load_type
+   public :: load_pressure, load_body, load_centrifugal
    public :: time_step, time_total
    public :: motion_displacement, motion_velocity, motion_acceleration
 
    integer, parameter :: time_step = 1
    integer, parameter :: time_total = 2
+
+   integer, parameter :: load_pressure = 1
+   integer, parameter :: load_body = 2
+   integer, parameter :: load_centrifugal = 3
 
    integer, parameter :: motion_displacement = 1
    integer, parameter :: motion_velocity = 2
@@ -52,6 +57,19 @@ module histories
       integer :: amplitude = 0
       type(place_type) :: place
    end type gravity_type
+
+   !> `*DLOAD` with P1-P4, BX, BY or CENTRIF: a load on the elements of a set.
+   type :: distributed_load_type
+      integer :: kind = 0                        !! load_pressure, load_body or load_centrifugal
+      integer :: set = 0                         !! element set, 0: every element
+      integer :: edge = 0                        !! 1 to 4 of a pressure
+      real(wp) :: value = 0.0_wp                 !! pressure; omega squared
+      real(wp) :: body(3) = 0.0_wp               !! force per volume
+      real(wp) :: point(3) = 0.0_wp              !! on the axis of rotation
+      real(wp) :: axis(3) = 0.0_wp               !! unit vector
+      integer :: amplitude = 0
+      type(place_type) :: place
+   end type distributed_load_type
 
    !> `*BASE MOTION`: ground acceleration along one direction; displacements are relative to it.
    type :: base_motion_type

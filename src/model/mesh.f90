@@ -10,7 +10,9 @@ module mesh
    public :: node_table_type, element_table_type, set_type, element_group_type
    public :: element_mass, element_spring1, element_spring2, element_springa
    public :: element_dashpot1, element_dashpot2, element_dashpota, element_truss, element_gap
-   public :: scheme_implicit, scheme_explicit, mass_lumped, mass_consistent
+   public :: element_line, is_solid_kind, solid_plane, solid_topology, solid_reduced
+   public :: plane_strain, plane_stress, axisymmetric, tri3, quad4, tri6, quad8
+   public :: scheme_implicit, scheme_explicit, scheme_automatic, mass_lumped, mass_consistent
 
    integer, parameter :: element_mass = 1
    integer, parameter :: element_spring1 = 2
@@ -22,8 +24,16 @@ module mesh
    integer, parameter :: element_truss = 8
    integer, parameter :: element_gap = 9
 
+   !> A line of two or three nodes without a section: it marks a boundary and carries nothing.
+   integer, parameter :: element_line = 10
+
+   !> Solids have kinds 100 plane + 10 topology + 1 if the quadrature is reduced: CPE4R is 121.
+   integer, parameter :: plane_strain = 1, plane_stress = 2, axisymmetric = 3
+   integer, parameter :: tri3 = 1, quad4 = 2, tri6 = 3, quad8 = 4
+
    integer, parameter :: scheme_implicit = 1
    integer, parameter :: scheme_explicit = 2
+   integer, parameter :: scheme_automatic = 3   !! explicit where stable at the step, else implicit
    integer, parameter :: mass_lumped = 1
    integer, parameter :: mass_consistent = 2
 
@@ -62,5 +72,39 @@ module mesh
       integer :: mass = 0                        !! mass_ parameter, 0: not said
       type(place_type) :: place
    end type element_group_type
+
+contains
+
+   !> Whether a kind is that of a plane or axisymmetric solid.
+   pure elemental function is_solid_kind(kind) result(solid)
+      integer, intent(in) :: kind
+      logical :: solid
+
+      solid = kind > 100
+   end function is_solid_kind
+
+   !> plane_strain, plane_stress or axisymmetric.
+   pure elemental function solid_plane(kind) result(plane)
+      integer, intent(in) :: kind
+      integer :: plane
+
+      plane = kind/100
+   end function solid_plane
+
+   !> tri3, quad4, tri6 or quad8.
+   pure elemental function solid_topology(kind) result(topology)
+      integer, intent(in) :: kind
+      integer :: topology
+
+      topology = modulo(kind, 100)/10
+   end function solid_topology
+
+   !> Whether the quadrature is reduced (the R names).
+   pure elemental function solid_reduced(kind) result(reduced)
+      integer, intent(in) :: kind
+      logical :: reduced
+
+      reduced = modulo(kind, 10) == 1
+   end function solid_reduced
 
 end module mesh

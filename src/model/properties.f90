@@ -17,6 +17,12 @@ module properties
    integer, parameter :: section_mass = 4
    integer, parameter :: section_gap = 5
 
+   !> A piecewise linear law y(x), x strictly increasing; constant beyond its ends.
+   type :: table_type
+      integer :: n = 0
+      real(wp), allocatable :: x(:), y(:)
+   end type table_type
+
    !> Linear elastic isotropic material with Rayleigh damping C = alpha M + beta K.
    type :: material_type
       character(len=name_length) :: name = ''
@@ -26,16 +32,13 @@ module properties
       real(wp) :: young = 0.0_wp               !! E
       real(wp) :: poisson = 0.0_wp             !! nu
       real(wp) :: density = 0.0_wp             !! rho
+      logical :: has_plastic = .false.
+      logical :: kinematic = .false.           !! hardening: kinematic, else isotropic
+      type(table_type) :: hardening            !! yield stress y over equivalent plastic strain x
       real(wp) :: damping_alpha = 0.0_wp       !! mass-proportional, 1/time
       real(wp) :: damping_beta = 0.0_wp        !! stiffness-proportional, time
       type(place_type) :: place
    end type material_type
-
-   !> A piecewise linear law y(x), x strictly increasing; constant beyond its ends.
-   type :: table_type
-      integer :: n = 0
-      real(wp), allocatable :: x(:), y(:)
-   end type table_type
 
    !> What a section card says of the elements of a set.
    type :: section_type
@@ -43,6 +46,7 @@ module properties
       integer :: set = 0                       !! index of the element set
       integer :: material = 0                  !! index of the material, solid sections
       real(wp) :: area = 0.0_wp                !! truss area or plane thickness
+      logical :: b_bar = .false.               !! volumetric strain averaged (CPE4, CAX4)
       integer :: dof(2) = 0                    !! directions at its nodes, springs and dashpots 1, 2
       real(wp) :: coefficient = 0.0_wp         !! k of a linear spring, c of a dashpot, m of a mass
       logical :: nonlinear = .false.

@@ -3,19 +3,21 @@ module steps
    use kinds, only: wp
    use places, only: place_type
    use properties, only: name_length
-   use histories, only: boundary_type, nodal_value_type, gravity_type, base_motion_type
+   use histories, only: boundary_type, nodal_value_type, gravity_type, base_motion_type, &
+         distributed_load_type
    implicit none
    private
 
    public :: step_type, request_type
-   public :: procedure_static, procedure_dynamic
+   public :: procedure_static, procedure_dynamic, procedure_frequency
    public :: request_node_print, request_node_file, request_element_print, request_element_file
    public :: request_contact_print, request_contact_file, request_energy_print
    public :: quantity_u, quantity_v, quantity_a, quantity_rf, quantity_s, quantity_e
-   public :: quantity_ener, quantity_cf, quantity_cdis, n_quantities
+   public :: quantity_ener, quantity_cf, quantity_cdis, quantity_peeq, n_quantities
 
    integer, parameter :: procedure_static = 1
    integer, parameter :: procedure_dynamic = 2
+   integer, parameter :: procedure_frequency = 3
 
    integer, parameter :: request_node_print = 1
    integer, parameter :: request_node_file = 2
@@ -34,7 +36,8 @@ module steps
    integer, parameter :: quantity_ener = 7
    integer, parameter :: quantity_cf = 8
    integer, parameter :: quantity_cdis = 9
-   integer, parameter :: n_quantities = 9
+   integer, parameter :: quantity_peeq = 10
+   integer, parameter :: n_quantities = 10
 
    !> One PRINT or FILE card.
    type :: request_type
@@ -58,12 +61,18 @@ module steps
       real(wp) :: alpha = 0.0_wp                 !! HHT, -1/3 to 0
       real(wp) :: dt = 0.0_wp
       real(wp) :: duration = 0.0_wp
+      real(wp) :: dt_min = 0.0_wp                !! automatic increments: the smallest, 0: 1e-5 of T
+      real(wp) :: dt_max = 0.0_wp                !! the largest, 0: T
+      real(wp) :: tolerance = 0.0_wp             !! of the local displacement error, 0: default
+      integer :: n_modes = 0                     !! frequency steps
       logical :: new_boundaries = .false.        !! OP=NEW: those of earlier steps are dropped
       logical :: new_loads = .false.
       logical :: new_gravity = .false.
       type(boundary_type), allocatable :: boundaries(:)
       type(nodal_value_type), allocatable :: loads(:)
       type(gravity_type), allocatable :: gravity(:)
+      type(distributed_load_type), allocatable :: distributed(:)
+      logical :: new_distributed = .false.
       type(base_motion_type), allocatable :: base_motions(:)
       type(nodal_value_type), allocatable :: initial_displacements(:)
       type(nodal_value_type), allocatable :: initial_velocities(:)

@@ -3,14 +3,15 @@ module grid_recorder
    use kinds, only: wp
    use errors, only: error_type
    use model, only: model_type
-   use steps, only: quantity_u, quantity_v, quantity_a, quantity_rf, quantity_s, quantity_e, &
-         quantity_ener, quantity_cf, quantity_cdis, n_quantities
+   use steps, only: quantity_u, quantity_v, quantity_a, quantity_rf, quantity_cf, &
+         quantity_cdis, n_quantities
    use contact_pairs, only: contact_pair_list_type
    use impact_scene, only: scene_type
    use hdf5_file, only: hdf5_file_type
    use vtkhdf_grid, only: vtkhdf_grid_type
    use output_plan, only: plan_type
-   use snapshot, only: snapshot_type, on_nodes, element_values
+   use snapshot, only: snapshot_type, on_nodes
+   use element_fields, only: element_fields_type, new_element_fields, set_element_fields
    implicit none
    private
 
@@ -20,38 +21,34 @@ module grid_recorder
    type :: grid_type
       type(vtkhdf_grid_type) :: grid
       integer :: field(n_quantities) = 0
-      integer :: n_elements = 0
+      type(element_fields_type) :: element_fields
       logical :: needs_reactions = .false.
    end type grid_type
 
    integer, parameter :: vertex = 1, line = 3
 
-   character(len=4), parameter :: names(n_quantities) = &
-         ['U   ', 'V   ', 'A   ', 'RF  ', 'S   ', 'E   ', 'ENER', 'CF  ', 'CDIS']
-   character(len=42), parameter :: meanings(n_quantities) = [ &
-         'displacement                              ', &
-         'velocity                                  ', &
-         'acceleration                              ', &
-         'reaction force                            ', &
-         'stress 11 22 33 12 23 13, 11 axial        ', &
-         'strain 11 22 33 12 23 13, 11 axial        ', &
-         'strain energy density                     ', &
-         'contact force                             ', &
-         'gap of contact nodes, 0 at others         ']
+   !> Quantities at nodes; those of elements are element_fields' business.
+   integer, parameter :: nodal(6) = [quantity_u, quantity_v, quantity_a, quantity_rf, quantity_cf, &
+         quantity_cdis]
+   character(len=4), parameter :: names(6) = ['U   ', 'V   ', 'A   ', 'RF  ', 'CF  ', 'CDIS']
+   character(len=34), parameter :: meanings(6) = [ &
+         'displacement                      ', 'velocity                          ', &
+         'acceleration                      ', 'reaction force                    ', &
+         'contact force                     ', 'gap of contact nodes, 0 at others ']
 
 contains
 
    !> Writes the mesh and makes the fields: displacements always, others on request.
-   subroutine new_grid(self, file, model, plan, error)
+   subroutine new_grid(self, file, model, plan, has_solids, error)
       type(grid_type), intent(out) :: self
       type(hdf5_file_type), intent(in) :: file
       type(model_type), intent(in) :: model
       type(plan_type), intent(in) :: plan
+      logical, intent(in) :: has_solids
       type(error_type), allocatable, intent(out) :: error
       integer, allocatable :: types(:), offsets(:)
       integer :: q
 
-      self%n_elements = model%elements%n
       self%needs_reactions = plan%file(quantity_rf)
       offsets = model%elements%first(:model%elements%n + 1) - 1
       types = merge(vertex, line, offsets(2:) - offsets(:model%elements%n) == 1)
@@ -60,9 +57,12 @@ contains
       if (allocated(error)) return
       do q = 1, n_quantities
          if (.not. plan%file(q) .and. q /= quantity_u) cycle
+         if (.not. any(nodal == q)) cycle
          call add_field(self, file, q, error)
          if (allocated(error)) return
       end do
+      call new_element_fields(self%element_fields, self%grid, file, plan%file, model%elements%n, &
+            has_solids, error)
    end subroutine new_grid
 
    subroutine add_field(self, file, q, error)
@@ -70,19 +70,15 @@ contains
       type(hdf5_file_type), intent(in) :: file
       integer, intent(in) :: q
       type(error_type), allocatable, intent(out) :: error
+      integer :: i
 
+      i = findloc(nodal, q, dim=1)
       select case (q)
-      case (quantity_s, quantity_e)
-         call self%grid%add_cell_field(file, trim(names(q)), 6, trim(meanings(q)), &
-               self%field(q), error)
-      case (quantity_ener)
-         call self%grid%add_cell_field(file, trim(names(q)), 1, trim(meanings(q)), &
-               self%field(q), error)
       case (quantity_cdis)
-         call self%grid%add_point_field(file, trim(names(q)), 1, trim(meanings(q)), &
+         call self%grid%add_point_field(file, trim(names(i)), 1, trim(meanings(i)), &
                self%field(q), error)
       case default
-         call self%grid%add_point_field(file, trim(names(q)), 3, trim(meanings(q)), &
+         call self%grid%add_point_field(file, trim(names(i)), 3, trim(meanings(i)), &
                self%field(q), error)
       end select
    end subroutine add_field
@@ -102,7 +98,7 @@ contains
       call set(quantity_rf, snapshot%rf)
       call set(quantity_cf, snapshot%cf)
       call set_gaps(self, scene, list, snapshot)
-      call set_elements(self, scene, snapshot)
+      call set_element_fields(self%element_fields, self%grid, scene, snapshot)
       call self%grid%append_frame(file, snapshot%time, error)
 
    contains
@@ -133,35 +129,5 @@ contains
       end do
       call self%grid%set_values(self%field(quantity_cdis), gap)
    end subroutine set_gaps
-
-   subroutine set_elements(self, scene, snapshot)
-      type(grid_type), intent(inout) :: self
-      type(scene_type), intent(in) :: scene
-      type(snapshot_type), intent(in) :: snapshot
-      real(wp), allocatable :: s(:, :), strain(:, :), energy(:)
-      real(wp) :: values(3)
-      integer :: g, e
-
-      if (all(self%field(quantity_s:quantity_ener) == 0)) return
-      allocate (s(6, self%n_elements), strain(6, self%n_elements), energy(self%n_elements))
-      s = 0.0_wp
-      strain = 0.0_wp
-      energy = 0.0_wp
-      do g = 1, size(scene%system%structure%groups)
-         associate (group => scene%system%structure%groups(g))
-            if (.not. group%element%has_stress) cycle
-            do e = 1, size(group%member)
-               values = element_values(scene, g, e, snapshot%u)
-               s(1, group%member(e)) = values(1)
-               strain(1, group%member(e)) = values(2)
-               energy(group%member(e)) = values(3)
-            end do
-         end associate
-      end do
-      if (self%field(quantity_s) > 0) call self%grid%set_values(self%field(quantity_s), s)
-      if (self%field(quantity_e) > 0) call self%grid%set_values(self%field(quantity_e), strain)
-      if (self%field(quantity_ener) > 0) call self%grid%set_values(self%field(quantity_ener), &
-            energy)
-   end subroutine set_elements
 
 end module grid_recorder

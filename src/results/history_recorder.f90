@@ -5,7 +5,9 @@ module history_recorder
    use text, only: to_text
    use model, only: model_type
    use steps, only: quantity_u, quantity_v, quantity_a, quantity_rf, quantity_s, quantity_e, &
-         quantity_ener, quantity_cf, quantity_cdis, n_quantities
+         quantity_ener, quantity_cf, quantity_cdis, quantity_peeq, n_quantities
+   use element_interface, only: n_recovered, recovered_stress, recovered_strain, recovered_peeq, &
+         recovered_energy
    use contact_pairs, only: contact_pair_list_type
    use impact_scene, only: scene_type
    use hdf5_file, only: hdf5_file_type
@@ -99,30 +101,61 @@ contains
       type(scene_type), intent(in) :: scene
       type(plan_type), intent(in) :: plan
       type(error_type), allocatable, intent(out) :: error
-      integer :: g, e, q, member
-      character(len=:), allocatable :: id
-      character(len=4), parameter :: names(3) = ['S11 ', 'E11 ', 'ENER']
-      character(len=21), parameter :: meanings(3) = &
-            ['axial stress         ', 'axial strain         ', 'strain energy density']
+      integer :: g, e, q
 
       do g = 1, size(scene%system%structure%groups)
          associate (group => scene%system%structure%groups(g))
-            if (.not. group%element%has_stress) cycle
+            if (group%element%n_points == 0) cycle
             do e = 1, size(group%member)
-               member = group%member(e)
-               id = to_text(model%elements%id(member))
-               do q = quantity_s, quantity_ener
-                  if (.not. plan%element_print(q, member)) cycle
-                  call add(self, file, column_type(q, e, g, q - quantity_s + 1), 'element_'//id &
-                        //'/' &
-                        //trim(names(q - quantity_s + 1)), trim(meanings(q - quantity_s + 1)) &
-                        //' of element '//id, error)
+               do q = 1, n_quantities
+                  if (.not. plan%element_print(q, group%member(e))) cycle
+                  call add_element(self, file, column_type(q, e, g, 0), &
+                        to_text(model%elements%id(group%member(e))), &
+                        group%element%n_stresses, error)
                   if (allocated(error)) return
                end do
             end do
          end associate
       end do
    end subroutine add_elements
+
+   !> The columns of one quantity of one element: rows of what `recover` gives, averaged.
+   subroutine add_element(self, file, column, id, n_stresses, error)
+      type(history_type), intent(inout) :: self
+      type(hdf5_file_type), intent(in) :: file
+      type(column_type), intent(in) :: column    !! without its component
+      character(len=*), intent(in) :: id
+      integer, intent(in) :: n_stresses
+      type(error_type), allocatable, intent(out) :: error
+      type(column_type) :: one
+      character(len=2), parameter :: direction(6) = ['11', '22', '33', '12', '13', '23']
+      character(len=6) :: word
+      integer :: i, first
+
+      one = column
+      select case (column%quantity)
+      case (quantity_s, quantity_e)
+         first = merge(recovered_stress, recovered_strain, column%quantity == quantity_s)
+         word = merge('stress', 'strain', column%quantity == quantity_s)
+         do i = 1, n_stresses
+            one%component = first + i - 1
+            call add(self, file, one, 'element_'//id//'/'//merge('S', 'E', word == 'stress') &
+                  //direction(i), word//' '//direction(i)//' of element '//id &
+                  //', mean over its points', &
+                  error)
+            if (allocated(error)) return
+         end do
+      case (quantity_peeq)
+         one%component = recovered_peeq
+         call add(self, file, one, 'element_'//id//'/PEEQ', &
+               'equivalent plastic strain of element ' &
+               //id//', mean over its points', error)
+      case default
+         one%component = recovered_energy
+         call add(self, file, one, 'element_'//id//'/ENER', 'strain energy density of element ' &
+               //id//', mean over its points', error)
+      end select
+   end subroutine add_element
 
    subroutine add_pairs(self, file, list, plan, error)
       type(history_type), intent(inout) :: self
@@ -189,13 +222,13 @@ contains
       call self%table%append_row(file, row, error)
    end subroutine record_history
 
-   pure function value_of(column, scene, list, snapshot) result(value)
+   function value_of(column, scene, list, snapshot) result(value)
       type(column_type), intent(in) :: column
       type(scene_type), intent(in) :: scene
       type(contact_pair_list_type), intent(in) :: list
       type(snapshot_type), intent(in) :: snapshot
       real(wp) :: value
-      real(wp) :: three(3)
+      real(wp) :: values(n_recovered)
 
       select case (column%quantity)
       case (quantity_u)
@@ -206,9 +239,9 @@ contains
          value = snapshot%a(column%item)
       case (quantity_rf)
          value = snapshot%rf(column%item)
-      case (quantity_s, quantity_e, quantity_ener)
-         three = element_values(scene, column%group, column%item, snapshot%u)
-         value = three(column%component)
+      case (quantity_s, quantity_e, quantity_ener, quantity_peeq)
+         values = element_values(scene, column%group, column%item, snapshot)
+         value = values(column%component)
       case (quantity_cf)
          value = sum(snapshot%lambda*scene%rows%normal(column%component, :), &
                mask=list%rows%pair == column%item)

@@ -59,11 +59,13 @@ contains
       type(scene_type), intent(in) :: scene
       type(contact_pair_list_type), intent(in) :: list
       type(error_type), allocatable, intent(out) :: error
+      integer :: i
 
       call new_plan(self%plan, model)
       call self%file%create(path, error)
       if (allocated(error)) return
-      call new_grid(self%grid, self%file, model, self%plan, error)
+      call new_grid(self%grid, self%file, model, self%plan, any([(scene%system%structure%groups(i) &
+            %element%is_solid, i=1, size(scene%system%structure%groups))]), error)
       if (allocated(error)) return
       call new_history(self%history, self%file, model, scene, list, self%plan, error)
       if (allocated(error)) return

@@ -1,19 +1,20 @@
 !> Values to record at one time, on nodes, elements and contact rows.
 module snapshot
    use kinds, only: wp
-   use motion_state, only: state_type
+   use element_interface, only: n_recovered
    use reactions, only: reaction_forces
    use constraint_rows, only: row_forces, row_gaps
    use impact_scene, only: scene_type, contact_motion_type
    implicit none
    private
 
-   public :: snapshot_type, take_snapshot, on_nodes, element_values
+   public :: snapshot_type, take_snapshot, on_nodes, element_values, point_values
 
    !> Motion and forces on freedoms; gaps and forces of contact rows.
    type :: snapshot_type
       real(wp) :: time = 0.0_wp
       real(wp), allocatable :: u(:), v(:), a(:), rf(:), cf(:)   !! (n_freedoms)
+      real(wp), allocatable :: history(:)                       !! (n_history)
       real(wp), allocatable :: lambda(:), gap(:), impulse(:)    !! (n_rows)
    end type snapshot_type
 
@@ -30,6 +31,7 @@ contains
       self%u = motion%motion%d
       self%v = motion%motion%v
       self%a = motion%motion%a
+      self%history = motion%motion%history
       self%lambda = motion%lambda
       self%gap = row_gaps(scene%rows, motion%motion)
       self%impulse = scene%impulse
@@ -53,22 +55,36 @@ contains
       end do
    end function on_nodes
 
-   !> Axial stress, axial strain, energy density of an element of a group.
-   pure function element_values(scene, group, e, u) result(values)
+   !> Stresses and the rest of an element of a group, averaged over its points.
+   function element_values(scene, group, e, snapshot) result(values)
       type(scene_type), intent(in) :: scene
       integer, intent(in) :: group, e
-      real(wp), intent(in) :: u(:)               !! (n_freedoms)
-      real(wp) :: values(3)
+      type(snapshot_type), intent(in) :: snapshot
+      real(wp) :: values(n_recovered)
+      real(wp) :: points(n_recovered, scene%system%structure%groups(group)%element%n_points)
+
+      points = point_values(scene, group, e, snapshot)
+      values = sum(points, dim=2)/size(points, 2)
+   end function element_values
+
+   !> Stresses and the rest at the points of an element of a group.
+   function point_values(scene, group, e, snapshot) result(values)
+      type(scene_type), intent(in) :: scene
+      integer, intent(in) :: group, e
+      type(snapshot_type), intent(in) :: snapshot
+      real(wp) :: values(n_recovered, scene%system%structure%groups(group)%element%n_points)
       real(wp) :: d(size(scene%system%structure%groups(group)%lm, 1))
-      integer :: i
+      integer :: i, first, n
 
       associate (g => scene%system%structure%groups(group))
          d = 0.0_wp
          do i = 1, size(d)
-            if (g%lm(i, e) > 0) d(i) = u(g%lm(i, e))
+            if (g%lm(i, e) > 0) d(i) = snapshot%u(g%lm(i, e))
          end do
-         values = g%element%stress(e, d)
+         n = g%element%n_history
+         first = g%history_start + (e - 1)*n + 1
+         call g%element%recover(e, d, snapshot%history(first:first + n - 1), values)
       end associate
-   end function element_values
+   end function point_values
 
 end module snapshot

@@ -145,7 +145,8 @@ contains
       integer :: i
 
       associate (structure => self%scene%system%structure)
-         call new_contact_motion(self%motion, structure%map%n_freedoms, self%scene%rows%n)
+         call new_contact_motion(self%motion, structure%map%n_freedoms, self%scene%rows%n, &
+               structure%n_history)
          call put_values(structure, self%model%initial_displacements, self%motion%motion%d)
          call put_values(structure, self%model%initial_velocities, self%motion%motion%v)
       end associate
