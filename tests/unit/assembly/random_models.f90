@@ -13,7 +13,7 @@ module random_models
    implicit none
    private
 
-   public :: build_random_frame, dense_matrices_of, dense_transformation
+   public :: build_random_frame, dense_matrices_of, dense_transformation, fresh_history
 
    integer, parameter :: n_nodes = 8
 
@@ -81,13 +81,14 @@ contains
       type(group_type), intent(in) :: group
       integer, intent(in) :: e, scheme
       real(wp), intent(inout) :: m(:, :), c(:, :), k(:, :)
-      real(wp), allocatable :: part(:, :), zero(:)
+      real(wp), allocatable :: part(:, :), zero(:), history(:)
       integer, allocatable :: rows(:), freedoms(:)
       integer :: i, n
 
       n = 3*group%element%n_nodes
-      allocate (part(n, n), zero(n))
+      allocate (part(n, n), zero(n), history(group%element%n_history))
       zero = 0.0_wp
+      history = 0.0_wp
       rows = pack([(i, i=1, n)], group%lm(:, e) > 0)
       freedoms = group%lm(rows, e)
       call group%element%mass(e, group%lumped, part)
@@ -95,9 +96,17 @@ contains
       if (group%scheme /= scheme) return
       call group%element%damping(e, part)
       c(freedoms, freedoms) = c(freedoms, freedoms) + part(rows, rows)
-      call group%element%stiffness(e, zero, part)
+      call group%element%stiffness(e, zero, history, part)
       k(freedoms, freedoms) = k(freedoms, freedoms) + part(rows, rows)
    end subroutine add_dense
+
+   !> The history of a structure that was never loaded.
+   pure function fresh_history(structure) result(history)
+      type(structure_type), intent(in) :: structure
+      real(wp) :: history(structure%n_history)
+
+      history = 0.0_wp
+   end function fresh_history
 
    !> T in full, from the constraints as the model has them.
    function dense_transformation(map, equations) result(t)

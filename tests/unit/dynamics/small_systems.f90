@@ -34,10 +34,11 @@ contains
       if (allocated(error)) return
       associate (map => system%structure%map, step => model%steps(1))
          n = map%n_freedoms
-         allocate (state%d(n), state%v(n), state%a(n))
+         allocate (state%d(n), state%v(n), state%a(n), state%history(system%structure%n_history))
          state%d = 0.0_wp
          state%v = 0.0_wp
          state%a = 0.0_wp
+         state%history = 0.0_wp
          system%static = step%procedure == procedure_static
          call begin_motions(system%motions, [model%boundaries, step%boundaries], map%freedom, &
                model%amplitudes, .true., [0.0_wp, step%duration], system%static)
@@ -84,9 +85,9 @@ contains
       call predict_motion(system, state, dt, newmark%beta, trial)
       fixed = fixed_force(system, state, trial)
       do i = 1, 50
-         call prepare_motion(system, dt, newmark%beta, trial%d, error)
+         call prepare_motion(system, dt, newmark%beta, trial%d, state%history, error)
          if (allocated(error)) return
-         delta = solve_motion(system, residual(system, fixed, trial))
+         delta = solve_motion(system, residual(system, fixed, state%history, trial))
          if (system%static) then
             trial%d = trial%d + delta
          else

@@ -12,6 +12,7 @@ module element_family
    private
 
    public :: member_type, build_family, random_lines, random_table
+   public :: fresh_history, find_force, find_stiffness, energy_at
 
    integer, parameter :: n_elements = 5
 
@@ -133,6 +134,47 @@ contains
          call line_of_action(random_matrix(3, 2), b(:, e), length(e))
       end do
    end subroutine random_lines
+
+   !> The history of elements that were never loaded.
+   pure function fresh_history(element) result(history)
+      class(element_type), intent(in) :: element
+      real(wp) :: history(element%n_history, element%n_elements)
+
+      history = 0.0_wp
+   end function fresh_history
+
+   !> Internal forces of elements that go straight to displacements d.
+   pure subroutine find_force(element, d, force)
+      class(element_type), intent(in) :: element
+      real(wp), intent(in) :: d(:, :)
+      real(wp), intent(out) :: force(:, :)
+      real(wp) :: updated(element%n_history, element%n_elements)
+
+      call element%internal_force(d, fresh_history(element), force, updated)
+   end subroutine find_force
+
+   !> Tangent stiffness of element e, never loaded before, at displacements d.
+   pure subroutine find_stiffness(element, e, d, matrix)
+      class(element_type), intent(in) :: element
+      integer, intent(in) :: e
+      real(wp), intent(in) :: d(:)
+      real(wp), intent(out) :: matrix(:, :)
+      real(wp) :: history(element%n_history, element%n_elements)
+
+      history = fresh_history(element)
+      call element%stiffness(e, d, history(:, e), matrix)
+   end subroutine find_stiffness
+
+   !> Strain energy of elements that went straight to displacements d.
+   pure function energy_at(element, d) result(energy)
+      class(element_type), intent(in) :: element
+      real(wp), intent(in) :: d(:, :)
+      real(wp) :: energy
+      real(wp) :: force(size(d, 1), size(d, 2)), updated(element%n_history, element%n_elements)
+
+      call element%internal_force(d, fresh_history(element), force, updated)
+      energy = element%strain_energy(d, updated)
+   end function energy_at
 
    !> A table through the origin's neighbourhood whose force grows with the elongation.
    subroutine random_table(u, f)

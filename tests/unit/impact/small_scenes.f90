@@ -44,7 +44,8 @@ contains
       if (allocated(error)) return
       if (present(method)) call move_alloc(made, method)
       scene%impulse = [(0.0_wp, i=1, scene%rows%n)]
-      call new_contact_motion(motion, scene%system%structure%map%n_freedoms, scene%rows%n)
+      call new_contact_motion(motion, scene%system%structure%map%n_freedoms, scene%rows%n, &
+            scene%system%structure%n_history)
       call open_ledger(scene%ledger, scene%system, motion%motion)
    end subroutine start_scene
 
@@ -119,14 +120,18 @@ contains
       type(scene_type), intent(in) :: scene
       real(wp), allocatable :: k(:, :)
       real(wp) :: unit(scene%system%structure%map%n_freedoms)
+      real(wp), dimension(scene%system%structure%n_history) :: history, updated
       integer :: j
 
       allocate (k(size(unit), size(unit)))
       k = 0.0_wp
+      history = 0.0_wp
+      updated = history
       do j = 1, size(unit)
          unit = 0.0_wp
          unit(j) = 1.0_wp
-         call elastic_force(scene%system%structure, scheme_implicit, unit, k(:, j))
+         call elastic_force(scene%system%structure, scheme_implicit, unit, history, k(:, j), &
+               updated)
       end do
    end function dense_stiffness
 
