@@ -108,7 +108,8 @@ contains
    end subroutine bracket_hit
 
    !> The cubic only guesses where a row that leaves the wall turns back: halves the start of the
-   !> bracket until the gap is open there on the path that is really taken.
+   !> bracket until the gap is open there on the path that is really taken. A row that is never
+   !> open is at the wall at once.
    subroutine start_open(scene, from, span, row, bracket, error)
       type(scene_type), intent(inout) :: scene
       type(contact_motion_type), intent(in) :: from

@@ -1,6 +1,6 @@
 """Random chains of masses between two walls: they must run, keep apart and keep their energy.
 
-Masses with springs and dashpots at random, gaps between all neighbours (some closed from the start),
+Masses with springs and dashpots at random, gaps between all neighbours (some closed at first),
 walls at both ends, restitution from none to 1, sometimes gravity, all kinds of step sizes. The
 seeds are fixed. A failing chain prints one line with its number; `random_chains.py carom 17` writes
 chain 17 to chain_17.inp.
@@ -16,9 +16,9 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / 'verification'))
 from carom_case import Checks, Run                                           # noqa: E402
 
-# Chains 106, 289 and 39 step far above 2 over their highest frequency: paths dip more than once and
+# Chains 106 and 39 step far above 2 over their highest frequency: paths dip more than once and
 # contact forces are bent in a step.
-TRANSFORMATION, FICTITIOUS = [*range(80), 106, 289], range(80, 106)
+TRANSFORMATION, FICTITIOUS = [*range(80), 106], range(80, 106)
 STEPS = 300
 # Most that energy may grow in one increment, in parts of the scale.
 GAIN = 1e-4
