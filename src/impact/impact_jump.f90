@@ -211,6 +211,9 @@ contains
       call mass_compliance(scene, motion%touching, compliance, error)
       if (allocated(error)) return
       available = max(0.0_wp, span_impulse)
+      ! at rest all rates are round-off of what the contact impulses have held back
+      limit = limit + thrown_tolerance*maxval(abs(matmul(compliance%w, available(compliance%rows))))
+      if (.not. any(motion%touching .and. abs(rates) > limit)) return
       call solve_complementarity(compliance%w, rates(compliance%rows) &
             - matmul(compliance%w, available(compliance%rows)), p, solved)
       if (.not. solved) then

@@ -10,7 +10,7 @@ module impact_time
    implicit none
    private
 
-   public :: span_type, hits_type, find_hits, locate_impact
+   public :: span_type, hits_type, find_hits, locate_impact, add_missed_hits
 
    !> A step of smooth motion that an impact may cut short.
    type :: span_type
@@ -98,16 +98,18 @@ contains
       end if
       bracket = [0.0_wp, high]
       if (path%g0 > span%gap_limit) return
-      rise = find_rise(path)
       bracket = 0.0_wp
-      if (path%r0 <= span%rate_limit .or. rise < 0.0_wp .or. rise >= high) return
-      if (path_value(path, rise) <= span%gap_limit) return
+      if (path%r0 <= span%rate_limit) return
+      ! it leaves the wall first, and comes back
+      rise = find_rise(path)
+      if (rise < 0.0_wp .or. rise >= high) rise = high/2.0_wp
       bracket = [rise, high]
       call start_open(scene, from, span, row, bracket, error)
    end subroutine bracket_hit
 
    !> The cubic only guesses where a row that leaves the wall turns back: halves the start of the
-   !> bracket until the gap is open there on the path that is really taken.
+   !> bracket until the gap is open there on the path that is really taken. A row that is never
+   !> open is at the wall at once.
    subroutine start_open(scene, from, span, row, bracket, error)
       type(scene_type), intent(inout) :: scene
       type(contact_motion_type), intent(in) :: from
@@ -144,6 +146,38 @@ contains
       gap = gaps(row)
    end function resolved_gap
 
+   !> Rows that overlap at the impact located: the cubic did not see them dip. They join the hits,
+   !> to be located before it.
+   subroutine add_missed_hits(scene, from, at, tau, span, hits, error)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(in) :: from
+      type(contact_motion_type), intent(in) :: at
+      real(wp), intent(in) :: tau            !! time of `at` in the span
+      type(span_type), intent(in) :: span
+      type(hits_type), intent(inout) :: hits
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), dimension(scene%rows%n) :: g0, gaps
+      real(wp) :: bracket(2)
+      integer :: i
+
+      g0 = row_gaps(scene%rows, from%motion)
+      gaps = row_gaps(scene%rows, at%motion)
+      do i = 1, scene%rows%n
+         if (from%touching(i) .or. any(hits%row(:hits%n) == i)) cycle
+         if (gaps(i) >= min(g0(i), 0.0_wp) - 2.0_wp*span%gap_limit) cycle
+         bracket = [0.0_wp, tau]
+         if (g0(i) <= span%gap_limit) then
+            bracket(1) = tau/2.0_wp
+            call start_open(scene, from, span, i, bracket, error)
+            if (allocated(error)) return
+         end if
+         hits%n = hits%n + 1
+         hits%row(hits%n) = i
+         hits%low(hits%n) = bracket(1)
+         hits%high(hits%n) = bracket(2)
+      end do
+   end subroutine add_missed_hits
+
    !> The first time at which the smallest gap of the hit rows vanishes: regula falsi with the
    !> weights
    !> of Anderson and Bjorck, and a bisection whenever three trials have not shrunk the bracket to a
@@ -178,7 +212,7 @@ contains
          end if
          call advance_smoothly(scene, from, x, span%beta, trial, error, span%held)
          if (allocated(error)) return
-         gap = smallest_gap(scene, trial, hits, x)
+         gap = smallest_gap(scene, trial, span, hits, x)
          if (abs(gap) < best) then
             best = abs(gap)
             tau = x
@@ -208,7 +242,7 @@ contains
          call advance_smoothly(scene, from, bracket%high, span%beta, at, error, span%held)
          if (allocated(error)) return
       end if
-      bracket%gap_high = smallest_gap(scene, at, hits, bracket%high)
+      bracket%gap_high = smallest_gap(scene, at, span, hits, bracket%high)
       g0 = row_gaps(scene%rows, from%motion)
       bracket%gap_low = -bracket%gap_high
       if (.not. bracket%low > 0.0_wp) then
@@ -216,10 +250,12 @@ contains
       end if
    end subroutine open_bracket
 
-   !> The smallest gap at x among the rows whose bracket has begun.
-   function smallest_gap(scene, trial, hits, x) result(gap)
+   !> The smallest gap at x among the rows whose bracket has begun, or that overlap before it: their
+   !> path dips more than once.
+   function smallest_gap(scene, trial, span, hits, x) result(gap)
       type(scene_type), intent(in) :: scene
       type(contact_motion_type), intent(in) :: trial
+      type(span_type), intent(in) :: span
       type(hits_type), intent(in) :: hits
       real(wp), intent(in) :: x
       real(wp) :: gap
@@ -229,7 +265,7 @@ contains
       g = row_gaps(scene%rows, trial%motion)
       gap = huge(gap)
       do i = 1, hits%n
-         if (x >= hits%low(i)) gap = min(gap, g(hits%row(i)))
+         if (x >= hits%low(i) .or. g(hits%row(i)) < -span%gap_limit) gap = min(gap, g(hits%row(i)))
       end do
    end function smallest_gap
 

@@ -90,7 +90,7 @@ contains
 
    !> The fixed point of the iteration, by iterating, or directly from
    !> 0 <= lambda, ((1 + alpha)/alpha) W lambda + g_free >= 0, which is also the answer where the
-   !> iteration's set of overlapping rows cycles.
+   !> iteration's set of overlapping rows cycles, or ends with a row that pulls.
    subroutine find_forces(scene, w, free_gaps, lambda, error)
       type(scene_type), intent(inout) :: scene
       real(wp), intent(in) :: w(:, :)
@@ -103,7 +103,7 @@ contains
       allocate (lambda(size(free_gaps)))
       if (.not. scene%settings%direct) then
          call iterate_forces(scene, w, free_gaps, lambda, solved)
-         if (solved) return
+         if (solved .and. all(lambda >= 0.0_wp)) return
       end if
       alpha = scene%settings%return_parameter
       call solve_complementarity((1.0_wp + alpha)/alpha*w, free_gaps, lambda, solved)

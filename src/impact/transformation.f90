@@ -13,7 +13,7 @@ module transformation
          acceleration_tolerance, merge_time_tolerance
    use impact_method, only: impact_method_type
    use constrained_step, only: advance_smoothly
-   use impact_time, only: span_type, hits_type, find_hits, locate_impact
+   use impact_time, only: span_type, hits_type, find_hits, locate_impact, add_missed_hits
    use impact_jump, only: impact_type, apply_impact, restart_acceleration, project_touching, &
          mass_compliance, compliance_type, follow_wall
    implicit none
@@ -37,6 +37,10 @@ module transformation
       integer :: n_events = 0
       logical :: at_limit = .false.          !! no more events are allowed
    end type progress_type
+
+   !> A contact force below this part of its size at the start of the span has vanished.
+   real(wp), parameter :: release_tolerance = 1.0e-3_wp
+   integer, parameter :: max_release_trials = 8
 
    !> What is left of a step below this part of it is round-off.
    real(wp), parameter :: time_tolerance = 1.0e-13_wp
@@ -190,11 +194,49 @@ contains
          motion%fresh = .false.
          span%dt = 0.0_wp
       else if (first < 1.0_wp - merge_time_tolerance) then
-         span%dt = first*span%dt
          span%held = motion%touching
-         call advance_smoothly(scene, motion, span%dt, span%beta, next, error, span%held)
+         call locate_release(scene, motion, release, first, span, next, error)
       end if
    end subroutine cut_at_release
+
+   !> Cuts the span where the first of the releasing rows has lost its contact force: the linear
+   !> guess, improved by regula falsi where the force is not linear (steps large for the structure).
+   subroutine locate_release(scene, motion, release, first, span, next, error)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(in) :: motion
+      logical, intent(in) :: release(:)          !! (n_rows)
+      real(wp), intent(in) :: first              !! linear guess, in parts of the span
+      type(span_type), intent(inout) :: span
+      type(contact_motion_type), intent(inout) :: next
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: low, high, force_low, force_high, force, whole
+      integer :: row, i
+
+      row = findloc(release, .true., dim=1)
+      whole = span%dt
+      low = 0.0_wp
+      high = whole
+      force_low = motion%lambda(row)
+      force_high = force_low*(1.0_wp - 1.0_wp/first)
+      span%dt = first*whole
+      do i = 1, max_release_trials
+         call advance_smoothly(scene, motion, span%dt, span%beta, next, error, span%held)
+         if (allocated(error)) return
+         force = next%lambda(row)
+         if (abs(force) <= release_tolerance*motion%lambda(row)) return
+         if (force > 0.0_wp) then
+            low = span%dt
+            force_low = force
+            force_high = force_high/2.0_wp
+         else
+            high = span%dt
+            force_high = force
+            force_low = force_low/2.0_wp
+         end if
+         span%dt = low + (high - low)*force_low/(force_low - force_high)
+      end do
+      call advance_smoothly(scene, motion, span%dt, span%beta, next, error, span%held)
+   end subroutine locate_release
 
    !> When the opening rows let go, in parts of the span: contact forces go linearly over it.
    subroutine release_times(scene, motion, span, opening, theta, error)
@@ -250,14 +292,24 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(contact_motion_type) :: at
       type(impact_type) :: impact
+      type(hits_type) :: all_hits
       real(wp) :: tau
+      integer :: n
 
-      call locate_impact(scene, motion, next, span, hits, tau, at, error)
-      if (allocated(error)) return
+      all_hits = hits
+      do
+         n = all_hits%n
+         call locate_impact(scene, motion, next, span, all_hits, tau, at, error)
+         if (allocated(error)) return
+         if (.not. tau > 0.0_wp) exit
+         call add_missed_hits(scene, motion, at, tau, span, all_hits, error)
+         if (allocated(error)) return
+         if (all_hits%n == n) exit
+      end do
       if (tau > 0.0_wp) call take_span(scene, motion, at, tau, span, progress, error)
       if (allocated(error)) return
       progress%n_events = progress%n_events + 1
-      call choose_rows(scene, motion, span, hits, tau, progress, impact)
+      call choose_rows(scene, motion, span, all_hits, tau, progress, impact)
       call apply_impact(scene, motion, impact, error)
       motion%fresh = .true.
    end subroutine go_through_impact

@@ -12,6 +12,8 @@ module complementarity
    real(wp), parameter :: relative_tolerance = 1.0e-12_wp
    !> A pivot below this part of its diagonal entry means that rows depend on each other.
    real(wp), parameter :: pivot_tolerance = 1.0e-14_wp
+   !> Residuals below this part of the right-hand side fulfil dependent equations.
+   real(wp), parameter :: dependence_limit = 1.0e-9_wp
    !> What is then added to the diagonal, in parts of its mean.
    real(wp), parameter :: dependence_tolerance = 1.0e-12_wp
 
@@ -47,13 +49,23 @@ contains
       solved = .false.
    end subroutine solve_complementarity
 
-   !> Solves W x + q = 0, every row held whatever the sign of x.
+   !> Solves W x + q = 0, every row held whatever the sign of x. Of the many answers for rows that
+   !> depend on each other, one without negative x is preferred.
    pure subroutine solve_equality(w, q, x, solved)
       real(wp), intent(in) :: w(:, :), q(:)
       real(wp), intent(out) :: x(:)
       logical, intent(out) :: solved
       logical :: active(size(q))
 
+      x = -q
+      solved = size(q) == 0
+      if (solved) return
+      call solve_definite(w, x, 0.0_wp, solved)
+      if (solved) return
+      call solve_complementarity(w, q, x, solved)
+      if (solved) solved = all(abs(matmul(w, x) + q) <= dependence_limit*max(maxval(abs(q)), &
+            tiny(1.0_wp)))
+      if (solved) return
       active = .true.
       call solve_active(w, q, active, x, solved)
    end subroutine solve_equality

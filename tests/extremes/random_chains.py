@@ -1,6 +1,6 @@
 """Random chains of masses between two walls: they must run, keep apart and keep their energy.
 
-Masses with springs and dashpots at random, gaps between all neighbours (some closed from the start),
+Masses with springs and dashpots at random, gaps between all neighbours (some closed at first),
 walls at both ends, restitution from none to 1, sometimes gravity, all kinds of step sizes. The
 seeds are fixed. A failing chain prints one line with its number; `random_chains.py carom 17` writes
 chain 17 to chain_17.inp.
@@ -16,19 +16,19 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / 'verification'))
 from carom_case import Checks, Run                                           # noqa: E402
 
-N_TRANSFORMATION, N_FICTITIOUS = 80, 30
+# Chains 106 and 39 step far above 2 over their highest frequency: paths dip more than once and
+# contact forces are bent in a step.
+TRANSFORMATION, FICTITIOUS = [*range(80), 106], range(80, 106)
 STEPS = 300
-# Most that energy may grow in one increment, in parts of the scale. A release is located on a
-# straight line of the contact force; in chain 39 (highest frequency times step above 2, three releases
-# in one step) that gives 2.7e-4, at half the step nothing.
-GAIN, COARSE_GAIN = 1e-4, {39: 1e-3}
+# Most that energy may grow in one increment, in parts of the scale.
+GAIN = 1e-4
 
 
 def make_chain(seed):
     """Deck of a chain, and what its energies are measured by: kinetic energy and a weight."""
     rng = np.random.default_rng(seed)
     n = rng.integers(2, 7)
-    fictitious = seed >= N_TRANSFORMATION
+    fictitious = seed in FICTITIOUS
     mass, speed = rng.uniform(0.5, 3, n), rng.normal(size=n)
     restitution = rng.choice(['', ', RESTITUTION=0', ', RESTITUTION=0.3', ', RESTITUTION=0.7',
                               ', RESTITUTION=1'])
@@ -89,7 +89,7 @@ def find_faults(seed, folder):
     if done.returncode:
         return [f'status {done.returncode}: {done.stderr.strip()[:200]}']
     run = Run(0, '', result)
-    return judge(run, fictitious, kinetic, weight, COARSE_GAIN.get(seed, GAIN))
+    return judge(run, fictitious, kinetic, weight, GAIN)
 
 
 def judge(run, fictitious, kinetic, weight, gain_limit):
@@ -122,16 +122,16 @@ def main():
         Path(f'chain_{sys.argv[2]}.inp').write_text(make_chain(int(sys.argv[2]))[0])
         return
     checks = Checks()
-    seeds = range(N_TRANSFORMATION + N_FICTITIOUS)
+    seeds = [*TRANSFORMATION, *FICTITIOUS]
     with tempfile.TemporaryDirectory(prefix='carom_') as name, ThreadPoolExecutor(2) as pool:
-        faults = list(pool.map(lambda seed: find_faults(seed, Path(name)), seeds))
+        faults = dict(zip(seeds, pool.map(lambda seed: find_faults(seed, Path(name)), seeds)))
     for seed in seeds:
         if faults[seed]:
             print(f'chain {seed}: {"; ".join(faults[seed])}')
-    checks.at_most(sum(map(bool, faults[:N_TRANSFORMATION])), 0,
-                   f'failing chains of {N_TRANSFORMATION} by transformation')
-    checks.at_most(sum(map(bool, faults[N_TRANSFORMATION:])), 0,
-                   f'failing chains of {N_FICTITIOUS} by fictitious force')
+    checks.at_most(sum(bool(faults[seed]) for seed in TRANSFORMATION), 0,
+                   f'failing chains of {len(TRANSFORMATION)} by transformation')
+    checks.at_most(sum(bool(faults[seed]) for seed in FICTITIOUS), 0,
+                   f'failing chains of {len(FICTITIOUS)} by fictitious force')
     checks.finish()
 
 
