@@ -216,7 +216,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       associate (step => self%model%steps(i_step))
-         if (step%max_increments == 0) return
+         if (step%max_increments == 0 .or. .not. step%direct) return
          if (count_increments(step) <= step%max_increments) return
          call fail_at(error, self%model%source, step%place, 'the step needs ' &
                //to_text(count_increments(step))//' increments, INC allows ' &

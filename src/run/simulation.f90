@@ -6,21 +6,18 @@ module simulation
    use clock, only: seconds_now
    use steps, only: step_type, request_energy_print
    use motion_state, only: state_type
-   use external_load, only: load_at
-   use energy_ledger, only: ledger_type, open_ledger, close_increment
+   use energy_ledger, only: ledger_type, close_increment
    use effective_matrix, only: mark_implicit
    use deck_reader, only: read_deck
-   use impact_scene, only: contact_motion_type, accept_span
-   use constrained_step, only: solve_statically
-   use impact_jump, only: restart_acceleration
    use result_file, only: result_file_type, open_results, record_increment, close_results, &
          write_system, flush_results
    use command_line, only: command_type, version_text
    use run_log, only: log_type, open_log, close_log, say, write_status
    use progress, only: progress_type, start_progress, show_progress, end_progress
    use scene_setup, only: simulation_type, build_scene, begin_step, initial_motion, &
-         count_increments, &
-         last_increment, count_events
+         count_increments, last_increment, count_events
+   use step_start, only: start_step
+   use increments, only: control_type, start_control, take_increment, take_automatic_increment
    use run_report, only: report_model, report_step, report_notes, report_summary
    implicit none
    private
@@ -164,154 +161,130 @@ contains
       integer, intent(in) :: i_step
       type(output_type), intent(inout) :: output
       type(error_type), allocatable, intent(out) :: error
-      integer :: increment, n_increments
-      real(wp) :: t_start, dt, t_end
 
-      call start_step(simulation, i_step, output, error)
+      call start_step(simulation, i_step, error)
       if (allocated(error)) return
+      call report_step(simulation, i_step, output%log)
+      if (i_step == 1) call record_start(simulation, output, error)
+      if (allocated(error)) return
+      if (simulation%model%steps(i_step)%direct) then
+         call run_fixed(simulation, i_step, output, error)
+      else
+         call run_automatic(simulation, i_step, output, error)
+      end if
+   end subroutine run_step
+
+   !> The system of equations and the initial state.
+   subroutine record_start(simulation, output, error)
+      type(simulation_type), intent(inout) :: simulation
+      type(output_type), intent(inout) :: output
+      type(error_type), allocatable, intent(out) :: error
+      logical, allocatable :: implicit_equation(:)
+
+      call mark_implicit(simulation%scene%system%structure, implicit_equation)
+      call write_system(output%results, simulation%scene, version_text, implicit_equation, error)
+      if (allocated(error)) return
+      call record_increment(output%results, simulation%scene, simulation%contact, &
+            simulation%motion, simulation%model%steps(1)%requests, 0, .false., error)
+      if (allocated(error)) return
+      call flush_results(output%results, error)
+   end subroutine record_start
+
+   !> Increments of one size, the last one shorter where they do not fill the step.
+   subroutine run_fixed(simulation, i_step, output, error)
+      type(simulation_type), intent(inout) :: simulation
+      integer, intent(in) :: i_step
+      type(output_type), intent(inout) :: output
+      type(error_type), allocatable, intent(out) :: error
+      integer :: increment, n_increments
+      real(wp) :: t_start, dt, step_time
+
       associate (step => simulation%model%steps(i_step))
          n_increments = count_increments(step)
          t_start = simulation%motion%motion%t
          do increment = 1, n_increments
             dt = step%dt
-            t_end = t_start + increment*step%dt
+            step_time = increment*step%dt
             if (increment == n_increments) then
-               t_end = t_start + step%duration
+               step_time = step%duration
                dt = last_increment(step, n_increments)
             end if
             call take_increment(simulation, dt, error)
             if (allocated(error)) return
             ! counted, not summed up: no drift of time over many increments
-            simulation%motion%motion%t = t_end
-            call finish_increment(simulation, i_step, increment, increment == n_increments, &
-                  output, &
-                  error)
+            simulation%motion%motion%t = t_start + step_time
+            call finish_increment(simulation, [i_step, increment], [step_time, dt], output, error)
             if (allocated(error)) return
          end do
       end associate
-   end subroutine run_step
+   end subroutine run_fixed
 
-   !> Conditions, loads and first acceleration of a step; the initial state is recorded.
-   subroutine start_step(simulation, i_step, output, error)
+   !> Increments chosen by the program.
+   subroutine run_automatic(simulation, i_step, output, error)
       type(simulation_type), intent(inout) :: simulation
       integer, intent(in) :: i_step
       type(output_type), intent(inout) :: output
       type(error_type), allocatable, intent(out) :: error
-      logical, allocatable :: implicit_equation(:)
-      real(wp), allocatable :: load_before(:)
-      real(wp) :: before
+      type(control_type) :: control
+      integer :: increment
+      real(wp) :: t_start, dt, step_time
 
-      before = simulation%scene%ledger%total
-      if (i_step > 1) load_before = load_now(simulation)
-      call begin_step(simulation, i_step, error)
-      if (allocated(error)) return
-      call report_step(simulation, i_step, output%log)
-      associate (scene => simulation%scene)
-         if (i_step == 1) then
-            call open_ledger(scene%ledger, scene%system, simulation%motion%motion)
-         else
-            ! what conditions give or take at the start of a later step comes from outside
-            call close_increment(scene%ledger, scene%system, simulation%motion%motion)
-            scene%ledger%external_work = scene%ledger%external_work + scene%ledger%total - before
-         end if
-         if (starts_anew(simulation, i_step)) then
-            call simulation%method%start(scene, simulation%motion, &
-                  simulation%model%steps(i_step)%dt, &
-                  error)
+      t_start = simulation%motion%motion%t
+      step_time = 0.0_wp
+      increment = 0
+      associate (step => simulation%model%steps(i_step))
+         call start_control(control, step)
+         do while (step_time < step%duration)
+            increment = increment + 1
+            call check_count(step, increment, step_time, error)
             if (allocated(error)) return
-         else if (i_step > 1 .and. .not. scene%system%static) then
-            call meet_new_load(simulation, load_before, error)
+            call take_automatic_increment(simulation, control, step%duration - step_time, dt, error)
             if (allocated(error)) return
-         end if
-         if (i_step > 1) return
-         call close_increment(scene%ledger, scene%system, simulation%motion%motion)
-         call mark_implicit(scene%system%structure, implicit_equation)
-         call write_system(output%results, scene, version_text, implicit_equation, error)
-         if (allocated(error)) return
-         call record_increment(output%results, scene, simulation%contact, simulation%motion, &
-               simulation%model%steps(1)%requests, 0, .false., error)
-         if (allocated(error)) return
-         call flush_results(output%results, error)
+            step_time = step_time + dt
+            if (step%duration - step_time <= 1.0e-12_wp*step%duration) step_time = step%duration
+            simulation%motion%motion%t = t_start + step_time
+            call finish_increment(simulation, [i_step, increment], [step_time, dt], output, error)
+            if (allocated(error)) return
+         end do
       end associate
-   end subroutine start_step
+      call say(output%log, 'step '//to_text(i_step)//': '//to_text(increment) &
+            //' automatic increments, '//to_text(control%n_cut)//' tried in vain')
+   end subroutine run_automatic
 
-   !> The applied forces at the time reached.
-   function load_now(simulation) result(force)
-      type(simulation_type), intent(in) :: simulation
-      real(wp) :: force(simulation%scene%system%structure%map%n_freedoms)
-
-      force = load_at(simulation%scene%system%loads, size(force), simulation%motion%motion%t)
-   end function load_now
-
-   !> A load that jumps where one dynamic step goes on from another changes the acceleration at
-   !> once; carried on, the old one would take half of the jump off the first increment.
-   subroutine meet_new_load(simulation, load_before, error)
-      type(simulation_type), intent(inout) :: simulation
-      real(wp), intent(in) :: load_before(:)
+   !> INC limits the automatic increments of a step.
+   subroutine check_count(step, increment, step_time, error)
+      type(step_type), intent(in) :: step
+      integer, intent(in) :: increment
+      real(wp), intent(in) :: step_time
       type(error_type), allocatable, intent(out) :: error
-      real(wp), parameter :: round_off = 1.0e-12_wp
 
-      if (maxval(abs(load_now(simulation) - load_before)) <= &
-            round_off*maxval(abs(load_before))) return
-      call restart_acceleration(simulation%scene, simulation%motion, error)
-      simulation%motion%fresh = .true.
-   end subroutine meet_new_load
-
-   !> A dynamic step finds its own acceleration unless it goes on from another dynamic step.
-   pure function starts_anew(simulation, i_step) result(anew)
-      type(simulation_type), intent(in) :: simulation
-      integer, intent(in) :: i_step
-      logical :: anew
-
-      anew = .false.
-      if (simulation%scene%system%static) return
-      anew = i_step == 1
-      if (anew) return
-      anew = simulation%model%steps(i_step &
-            - 1)%procedure /= simulation%model%steps(i_step)%procedure
-      anew = anew .or. size(simulation%model%steps(i_step)%initial_velocities) > 0
-   end function starts_anew
-
-   !> One increment by the step's procedure.
-   subroutine take_increment(simulation, dt, error)
-      type(simulation_type), intent(inout) :: simulation
-      real(wp), intent(in) :: dt
-      type(error_type), allocatable, intent(out) :: error
-      type(contact_motion_type) :: next
-
-      simulation%scene%impulse = 0.0_wp
-      if (.not. simulation%scene%system%static) then
-         call simulation%method%advance(simulation%scene, simulation%motion, dt, error)
-         return
-      end if
-      call solve_statically(simulation%scene, simulation%motion, dt, next, error)
-      if (allocated(error)) return
-      call accept_span(simulation%scene, simulation%motion, next)
-      simulation%motion = next
-   end subroutine take_increment
+      if (step%max_increments == 0 .or. increment <= step%max_increments) return
+      call new_error(error, status_numerical, 'INC='//to_text(step%max_increments) &
+            //' increments are used up at step time '//to_text(step_time)//' of ' &
+            //to_text(step%duration)//new_line('a')//'  cure: raise INC on *STEP')
+   end subroutine check_count
 
    !> Energies, checks, records, progress.
-   subroutine finish_increment(simulation, i_step, increment, last, output, error)
+   subroutine finish_increment(simulation, counts, times, output, error)
       type(simulation_type), intent(inout) :: simulation
-      integer, intent(in) :: i_step, increment
-      logical, intent(in) :: last
+      integer, intent(in) :: counts(2)           !! step and increment
+      real(wp), intent(in) :: times(2)           !! step time reached, size of the increment
       type(output_type), intent(inout) :: output
       type(error_type), allocatable, intent(out) :: error
       integer :: n_events
 
       associate (scene => simulation%scene, motion => simulation%motion, &
-            step => simulation%model%steps(i_step))
-         call check_finite(motion%motion, step%dt, error)
+            step => simulation%model%steps(counts(1)))
+         call check_finite(motion%motion, times(2), error)
          if (allocated(error)) return
          call close_increment(scene%ledger, scene%system, motion%motion)
          n_events = scene%n_events
          call count_events(simulation)
          call record_increment(output%results, scene, simulation%contact, motion, step%requests, &
-               increment, last, error)
+               counts(2), times(1) >= step%duration, error)
          if (allocated(error)) return
-         call write_status(output%log, [i_step, increment, &
-               int(scene%n_iterations - output%iterations), n_events], &
-               [increment*step%dt, motion%motion%t, step%dt])
+         call write_status(output%log, [counts, int(scene%n_iterations - output%iterations), &
+               n_events], [times(1), motion%motion%t, times(2)])
          output%iterations = scene%n_iterations
          call show_progress(output%progress, motion%motion%t/output%end_time, motion%motion%t)
          call flush_now_and_then(output, error)

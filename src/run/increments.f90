@@ -1,0 +1,201 @@
+!> Increments of a step: fixed, or automatic with cut-back and growth. An increment that is not
+!> accepted leaves no trace: all that it touches is put back from a checkpoint.
+module increments
+   use kinds, only: wp
+   use errors, only: error_type, new_error, status_numerical
+   use text, only: to_text
+   use steps, only: step_type
+   use energy_ledger, only: ledger_type
+   use impact_scene, only: contact_motion_type, accept_span
+   use constrained_step, only: solve_statically
+   use scene_setup, only: simulation_type
+   implicit none
+   private
+
+   public :: control_type, start_control, take_increment, take_automatic_increment
+   public :: checkpoint_type, keep_state, put_back
+
+   !> All that an increment changes.
+   type :: checkpoint_type
+      type(contact_motion_type) :: motion
+      type(ledger_type) :: ledger
+      integer :: n_events = 0
+   end type checkpoint_type
+
+   !> Automatic choice of increments.
+   type :: control_type
+      real(wp) :: dt = 0.0_wp                    !! to be tried next
+      real(wp) :: dt_min = 0.0_wp, dt_max = 0.0_wp
+      real(wp) :: tolerance = 0.0_wp             !! of the local displacement error, relative
+      real(wp) :: scale = 0.0_wp                 !! largest displacement met
+      integer :: n_easy = 0                      !! increments in a row that went easily
+      integer :: n_cut = 0                       !! increments tried in vain
+   end type control_type
+
+   real(wp), parameter :: default_tolerance = 1.0e-3_wp
+   real(wp), parameter :: smallest_share = 1.0e-5_wp   !! of the step, default of dt min
+   real(wp), parameter :: cut_factor = 0.25_wp         !! after a failure to converge
+   real(wp), parameter :: growth_factor = 1.5_wp
+   integer, parameter :: easy_iterations = 5
+   integer, parameter :: easy_increments = 2
+
+contains
+
+   !> The control of a step from its data line.
+   pure subroutine start_control(self, step)
+      type(control_type), intent(out) :: self
+      type(step_type), intent(in) :: step
+
+      self%dt = step%dt
+      self%dt_min = step%dt_min
+      if (.not. self%dt_min > 0.0_wp) self%dt_min = min(step%dt, smallest_share*step%duration)
+      self%dt_max = step%dt_max
+      if (.not. self%dt_max > 0.0_wp) self%dt_max = step%duration
+      self%tolerance = step%tolerance
+      if (.not. self%tolerance > 0.0_wp) self%tolerance = default_tolerance
+   end subroutine start_control
+
+   !> Keeps the state before an increment.
+   subroutine keep_state(simulation, checkpoint)
+      type(simulation_type), intent(in) :: simulation
+      type(checkpoint_type), intent(out) :: checkpoint
+
+      checkpoint%motion = simulation%motion
+      checkpoint%ledger = simulation%scene%ledger
+      checkpoint%n_events = simulation%scene%n_events
+   end subroutine keep_state
+
+   !> Puts the state back as if the increment had not been tried.
+   subroutine put_back(simulation, checkpoint)
+      type(simulation_type), intent(inout) :: simulation
+      type(checkpoint_type), intent(in) :: checkpoint
+
+      simulation%motion = checkpoint%motion
+      simulation%scene%ledger = checkpoint%ledger
+      simulation%scene%n_events = checkpoint%n_events
+      simulation%scene%impulse = 0.0_wp
+   end subroutine put_back
+
+   !> One increment by the step's procedure.
+   subroutine take_increment(simulation, dt, error)
+      type(simulation_type), intent(inout) :: simulation
+      real(wp), intent(in) :: dt
+      type(error_type), allocatable, intent(out) :: error
+      type(contact_motion_type) :: next
+
+      simulation%scene%impulse = 0.0_wp
+      if (.not. simulation%scene%system%static) then
+         call simulation%method%advance(simulation%scene, simulation%motion, dt, error)
+         return
+      end if
+      call solve_statically(simulation%scene, simulation%motion, dt, next, error)
+      if (allocated(error)) return
+      call accept_span(simulation%scene, simulation%motion, next)
+      simulation%motion = next
+   end subroutine take_increment
+
+   !> One accepted increment of at most `remaining`: tried, cut back where it does not converge or
+   !> its local error is too large, and the size of the next one chosen.
+   subroutine take_automatic_increment(simulation, control, remaining, dt, error)
+      type(simulation_type), intent(inout) :: simulation
+      type(control_type), intent(inout) :: control
+      real(wp), intent(in) :: remaining          !! to the end of the step
+      real(wp), intent(out) :: dt                !! what was taken
+      type(error_type), allocatable, intent(out) :: error
+      type(checkpoint_type) :: checkpoint
+      real(wp) :: ratio
+      integer :: iterations
+
+      call keep_state(simulation, checkpoint)
+      do
+         dt = min(control%dt, remaining)
+         ! no sliver at the end of the step
+         if (remaining - dt < 0.1_wp*dt) dt = remaining
+         iterations = int(simulation%scene%n_iterations)
+         call take_increment(simulation, dt, error)
+         iterations = int(simulation%scene%n_iterations) - iterations
+         if (.not. allocated(error)) then
+            ratio = error_ratio(simulation, control, checkpoint, dt)
+            if (ratio <= 1.0_wp .or. dt <= control%dt_min) exit
+         else if (error%status /= status_numerical) then
+            return
+         end if
+         call cut_back(simulation, control, checkpoint, dt, ratio, error)
+         if (allocated(error)) return
+      end do
+      control%scale = max(control%scale, maxval(abs(simulation%motion%motion%d)))
+      call choose_next(simulation, control, dt, ratio, iterations)
+   end subroutine take_automatic_increment
+
+   !> Local error of the displacement over what is tolerated: for Newmark's method
+   !> (beta - 1/6) h^2 (a1 - a0), of the largest displacement met. An increment with impacts, and a
+   !> static one, has no such estimate.
+   function error_ratio(simulation, control, checkpoint, dt) result(ratio)
+      type(simulation_type), intent(in) :: simulation
+      type(control_type), intent(in) :: control
+      type(checkpoint_type), intent(in) :: checkpoint
+      real(wp), intent(in) :: dt
+      real(wp) :: ratio
+      real(wp) :: weight, scale
+
+      ratio = 0.0_wp
+      if (simulation%scene%system%static) return
+      if (simulation%scene%n_events > checkpoint%n_events) return
+      weight = max(abs(simulation%scene%system%newmark%beta - 1.0_wp/6.0_wp), 1.0_wp/12.0_wp)
+      scale = max(control%scale, maxval(abs(simulation%motion%motion%d)))
+      if (.not. scale > 0.0_wp) return
+      ratio = weight*dt**2*maxval(abs(simulation%motion%motion%a - checkpoint%motion%motion%a)) &
+            /(control%tolerance*scale)
+   end function error_ratio
+
+   !> Puts the state back and chooses a smaller increment; at the smallest one the run stops.
+   subroutine cut_back(simulation, control, checkpoint, dt, ratio, error)
+      type(simulation_type), intent(inout) :: simulation
+      type(control_type), intent(inout) :: control
+      type(checkpoint_type), intent(in) :: checkpoint
+      real(wp), intent(in) :: dt
+      real(wp), intent(in) :: ratio              !! of the error, where the increment converged
+      type(error_type), allocatable, intent(inout) :: error
+      character(len=:), allocatable :: cause
+
+      call put_back(simulation, checkpoint)
+      control%n_cut = control%n_cut + 1
+      control%n_easy = 0
+      if (.not. allocated(error)) then
+         control%dt = max(control%dt_min, dt*max(cut_factor, 0.9_wp*ratio**(-1.0_wp/3.0_wp)))
+         return
+      end if
+      control%dt = cut_factor*dt
+      if (control%dt >= control%dt_min) then
+         deallocate (error)
+         return
+      end if
+      cause = error%message
+      call new_error(error, status_numerical, cause//new_line('a') &
+            //'  the increment was cut back to '//to_text(dt)//'; the smallest allowed is ' &
+            //to_text(control%dt_min))
+   end subroutine cut_back
+
+   !> Growth after increments that went easily: by the error estimate in motion, by the count of
+   !> iterations otherwise. Small changes are not worth a new factorization.
+   subroutine choose_next(simulation, control, dt, ratio, iterations)
+      type(simulation_type), intent(in) :: simulation
+      type(control_type), intent(inout) :: control
+      real(wp), intent(in) :: dt, ratio
+      integer, intent(in) :: iterations
+      real(wp) :: factor
+
+      control%n_easy = control%n_easy + 1
+      if (iterations > easy_iterations) control%n_easy = 0
+      if (control%n_easy < easy_increments) return
+      factor = growth_factor
+      if (.not. simulation%scene%system%static .and. ratio > 0.0_wp) then
+         factor = min(factor, 0.9_wp*ratio**(-1.0_wp/3.0_wp))
+      end if
+      if (factor < 1.2_wp) return
+      ! the last increment of a step may be shorter than what is tried next
+      control%dt = min(control%dt_max, max(control%dt, factor*dt))
+      control%n_easy = 0
+   end subroutine choose_next
+
+end module increments

@@ -1,0 +1,86 @@
+!> The start of a step: its conditions and loads come into force, the first acceleration is found.
+module step_start
+   use kinds, only: wp
+   use errors, only: error_type
+   use external_load, only: load_at
+   use energy_ledger, only: open_ledger, close_increment
+   use impact_jump, only: restart_acceleration
+   use scene_setup, only: simulation_type, begin_step
+   implicit none
+   private
+
+   public :: start_step
+
+contains
+
+   !> Brings step i_step into force and gives a dynamic step its acceleration and first contacts.
+   subroutine start_step(simulation, i_step, error)
+      type(simulation_type), intent(inout) :: simulation
+      integer, intent(in) :: i_step
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), allocatable :: load_before(:)
+      real(wp) :: before
+
+      before = simulation%scene%ledger%total
+      if (i_step > 1) load_before = load_now(simulation)
+      call begin_step(simulation, i_step, error)
+      if (allocated(error)) return
+      associate (scene => simulation%scene)
+         if (i_step == 1) then
+            call open_ledger(scene%ledger, scene%system, simulation%motion%motion)
+         else
+            ! what conditions give or take at the start of a later step comes from outside
+            call close_increment(scene%ledger, scene%system, simulation%motion%motion)
+            scene%ledger%external_work = scene%ledger%external_work + scene%ledger%total - before
+         end if
+         if (starts_anew(simulation, i_step)) then
+            call simulation%method%start(scene, simulation%motion, &
+                  simulation%model%steps(i_step)%dt, error)
+            if (allocated(error)) return
+         else if (i_step > 1 .and. .not. scene%system%static) then
+            call meet_new_load(simulation, load_before, error)
+            if (allocated(error)) return
+         end if
+         if (i_step == 1) call close_increment(scene%ledger, scene%system, &
+               simulation%motion%motion)
+      end associate
+   end subroutine start_step
+
+   !> The applied forces at the time reached.
+   function load_now(simulation) result(force)
+      type(simulation_type), intent(in) :: simulation
+      real(wp) :: force(simulation%scene%system%structure%map%n_freedoms)
+
+      force = load_at(simulation%scene%system%loads, size(force), simulation%motion%motion%t)
+   end function load_now
+
+   !> A load that jumps where one dynamic step goes on from another changes the acceleration at
+   !> once; carried on, the old one would take half of the jump off the first increment.
+   subroutine meet_new_load(simulation, load_before, error)
+      type(simulation_type), intent(inout) :: simulation
+      real(wp), intent(in) :: load_before(:)
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), parameter :: round_off = 1.0e-12_wp
+
+      if (maxval(abs(load_now(simulation) - load_before)) <= &
+            round_off*maxval(abs(load_before))) return
+      call restart_acceleration(simulation%scene, simulation%motion, error)
+      simulation%motion%fresh = .true.
+   end subroutine meet_new_load
+
+   !> A dynamic step finds its own acceleration unless it goes on from another dynamic step.
+   pure function starts_anew(simulation, i_step) result(anew)
+      type(simulation_type), intent(in) :: simulation
+      integer, intent(in) :: i_step
+      logical :: anew
+
+      anew = .false.
+      if (simulation%scene%system%static) return
+      anew = i_step == 1
+      if (anew) return
+      anew = simulation%model%steps(i_step - 1)%procedure &
+            /= simulation%model%steps(i_step)%procedure
+      anew = anew .or. size(simulation%model%steps(i_step)%initial_velocities) > 0
+   end function starts_anew
+
+end module step_start
