@@ -2,7 +2,7 @@
 !> natural coordinate fastest.
 module quadrature
    use kinds, only: wp
-   use topology, only: tri3, quad4, tri6, quad8, count_corners
+   use topology, only: tri3, quad4, tri6, count_corners
    implicit none
    private
 
@@ -31,7 +31,7 @@ contains
          call triangle_rule(3, rule)
       case (quad4)
          call quadrilateral_rule(merge(1, 2, reduced), rule)
-      case (quad8)
+      case default
          call quadrilateral_rule(merge(2, 3, reduced), rule)
       end select
    end function stiffness_rule
@@ -68,7 +68,7 @@ contains
                0.223381589678011465722302189360_wp)
          call add_orbit(rule, 0.091576213509770743459571463402_wp, &
                0.109951743655321867610998143973_wp)
-      case (7)
+      case default
          root = sqrt(15.0_wp)
          call add_centre(rule, 9.0_wp/40.0_wp)
          call add_orbit(rule, (6.0_wp + root)/21.0_wp, (155.0_wp + root)/1200.0_wp)
@@ -132,7 +132,7 @@ contains
          a = 1.0_wp/sqrt(3.0_wp)
          s = [-a, a]
          weight = 1.0_wp
-      case (3)
+      case default
          a = sqrt(0.6_wp)
          s = [-a, 0.0_wp, a]
          weight = [5.0_wp, 8.0_wp, 5.0_wp]/9.0_wp

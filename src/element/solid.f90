@@ -1,5 +1,5 @@
-!> Plane strain, plane stress and axisymmetric solids (CPE, CPS, CAX) of 3, 4, 6 and 8 nodes at small
-!> displacements, elastic or elastic-plastic. x and y are the plane; an axisymmetric solid has its
+!> Plane strain, plane stress and axisymmetric solids (CPE, CPS, CAX) of 3, 4, 6 and 8 nodes at
+!> small displacements, elastic or elastic-plastic. x and y are the plane; an axisymmetric solid has its
 !> radius along x and its axis along y, and stands for the full circumference.
 module solid
    use kinds, only: wp
@@ -126,8 +126,8 @@ contains
       end do
       if (size(self%kinematics%hourglass, 2) == 0) return
       do j = 1, 2
-         call add_in_direction(j, hourglass_stiffness(self)*outer(self%kinematics%hourglass(:, e)), &
-               matrix)
+         call add_in_direction(j, &
+               hourglass_stiffness(self)*outer(self%kinematics%hourglass(:, e)), matrix)
       end do
    end subroutine stiffness
 

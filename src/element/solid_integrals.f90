@@ -32,8 +32,8 @@ contains
       end do
    end function mass_matrix
 
-   !> The volume shared among the nodes, all shares positive: sums of the rows of the mass matrix, or
-   !> in proportion to its diagonal where there are middle nodes (Hinton, Rock and Zienkiewicz).
+   !> The volume shared among the nodes, all shares positive: row sums of the mass matrix, or in
+   !> proportion to its diagonal where there are middle nodes (Hinton, Rock and Zienkiewicz).
    pure function lumped_mass(shape, x) result(share)
       type(solid_shape_type), intent(in) :: shape
       real(wp), intent(in) :: x(:, :)           !! (2, n_nodes)
@@ -59,8 +59,8 @@ contains
       share = sum(mass_matrix(shape, x), 1)
    end function volume_shares
 
-   !> Integral of N times the distance vector from an axis. An axisymmetric solid turns about its own
-   !> axis of symmetry, whatever the arguments say.
+   !> Integral of N times the distance vector from an axis. An axisymmetric solid turns about its
+   !> own axis of symmetry, whatever the arguments say.
    pure function centrifugal_force(shape, x, point, axis) result(force)
       type(solid_shape_type), intent(in) :: shape
       real(wp), intent(in) :: x(:, :)           !! (2, n_nodes)

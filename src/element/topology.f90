@@ -85,7 +85,7 @@ contains
       case (tri6)
          l = [1.0_wp - xi(1) - xi(2), xi(1), xi(2)]
          n = [l*(2.0_wp*l - 1.0_wp), 4.0_wp*l*cshift(l, 1)]
-      case (quad8)
+      case default
          n = quad8_functions(xi)
       end select
    end function shape_functions
@@ -115,7 +115,7 @@ contains
             dn(:, i) = (4.0_wp*l(i) - 1.0_wp)*dl(:, i)
             dn(:, 3 + i) = 4.0_wp*(dl(:, i)*l(j) + l(i)*dl(:, j))
          end do
-      case (quad8)
+      case default
          dn = quad8_derivatives(xi)
       end select
    end function shape_derivatives
