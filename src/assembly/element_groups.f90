@@ -8,11 +8,12 @@ module element_groups
    use model, only: model_type
    use mesh, only: element_mass, element_spring1, element_spring2, element_springa, &
          element_dashpot1, element_dashpot2, element_dashpota, element_truss, element_gap, &
-         scheme_implicit, scheme_explicit, mass_consistent
+         element_line, is_solid_kind, scheme_implicit, scheme_explicit, mass_consistent
    use properties, only: section_type, material_type
    use element_interface, only: element_type
    use axial_kinematics, only: one_freedom, two_freedoms, line_of_action
    use point_mass, only: point_mass_type, new_point_mass
+   use solid_factory, only: make_solid
    use spring, only: spring_type, new_spring
    use dashpot, only: dashpot_type, new_dashpot
    use truss, only: truss_type, new_truss, truss_material_type
@@ -79,36 +80,54 @@ contains
          scheme_of(model%element_sets(model%groups(g)%set)%members) = model%groups(g)%scheme
          lumped_of(model%element_sets(model%groups(g)%set)%members) = lumped
       end do
-      ! Nothing but a truss has a mass matrix that is not diagonal
-      where (model%elements%kind(:model%elements%n) /= element_truss) lumped_of = .true.
+      ! Nothing but trusses and solids has a mass matrix that is not diagonal
+      where (model%elements%kind(:model%elements%n) /= element_truss .and. &
+            .not. is_solid_kind(model%elements%kind(:model%elements%n))) lumped_of = .true.
    end subroutine resolve_schemes
 
-   !> Gives elements of one kind, section, scheme and mass one number; gaps get none.
+   !> Gives elements of one kind, section, scheme and mass one number; gaps and lines get none.
    subroutine number_groups(model, scheme_of, lumped_of, key, n_groups)
       type(model_type), intent(in) :: model
       integer, intent(in) :: scheme_of(:)
       logical, intent(in) :: lumped_of(:)
       integer, allocatable, intent(out) :: key(:)
       integer, intent(out) :: n_groups
-      integer :: e, slot
-      integer, allocatable :: number_of(:)
+      integer :: e, variant
+      integer, allocatable :: rank_of(:), number_of(:, :, :)
 
+      call rank_kinds(model%elements%kind(:model%elements%n), rank_of)
       allocate (key(model%elements%n))
-      allocate (number_of(40*(size(model%sections) + 1)))
+      allocate (number_of(6, maxval([rank_of, 1]), 0:size(model%sections)))
       number_of = 0
       key = 0
       n_groups = 0
       do e = 1, model%elements%n
-         if (model%elements%kind(e) == element_gap) cycle
-         slot = 40*model%elements%section(e) + 4*(model%elements%kind(e) - 1) &
-               + 2*(scheme_of(e) - 1) + merge(1, 2, lumped_of(e))
-         if (number_of(slot) == 0) then
-            n_groups = n_groups + 1
-            number_of(slot) = n_groups
-         end if
-         key(e) = number_of(slot)
+         if (any(model%elements%kind(e) == [element_gap, element_line])) cycle
+         variant = 2*scheme_of(e) - merge(1, 0, lumped_of(e))
+         associate (number => number_of(variant, rank_of(model%elements%kind(e)), &
+               model%elements%section(e)))
+            if (number == 0) then
+               n_groups = n_groups + 1
+               number = n_groups
+            end if
+            key(e) = number
+         end associate
       end do
    end subroutine number_groups
+
+   !> Numbers the kinds that occur from 1; 0 for the others.
+   pure subroutine rank_kinds(kind, rank_of)
+      integer, intent(in) :: kind(:)
+      integer, allocatable, intent(out) :: rank_of(:)   !! (largest kind)
+      integer :: i
+
+      allocate (rank_of(maxval([kind, 1])))
+      rank_of = 0
+      rank_of(kind) = 1
+      do i = 2, size(rank_of)
+         if (rank_of(i) > 0) rank_of(i) = maxval(rank_of(:i - 1)) + 1
+      end do
+   end subroutine rank_kinds
 
    subroutine gather_nodes(group, model)
       type(group_type), intent(inout) :: group
@@ -135,6 +154,9 @@ contains
       section = model%sections(model%elements%section(group%member(1)))
       if (group%kind == element_mass) then
          call make_mass(group, section)
+         return
+      else if (is_solid_kind(group%kind)) then
+         call make_solid(group%element, model, group%member, group%ien, group%lumped, error)
          return
       end if
       call find_kinematics(group, model, section, b, length, error)

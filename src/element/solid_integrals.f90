@@ -1,0 +1,125 @@
+!> Mass and loads of one plane or axisymmetric solid, always with the full rule of the mass.
+module solid_integrals
+   use kinds, only: wp
+   use elastic, only: axisymmetric
+   use quadrature, only: rule_type, mass_rule, line_rule
+   use solid_geometry, only: solid_shape_type, map_derivatives, depth_at
+   use topology, only: quad4, count_nodes, count_corners, edge_nodes, shape_functions, &
+         line_functions, line_derivatives
+   implicit none
+   private
+
+   public :: mass_matrix, lumped_mass, volume_shares, centrifugal_force, edge_force
+
+contains
+
+   !> Integral of N Nt over the volume.
+   pure function mass_matrix(shape, x) result(matrix)
+      type(solid_shape_type), intent(in) :: shape
+      real(wp), intent(in) :: x(:, :)           !! (2, n_nodes)
+      real(wp) :: matrix(size(x, 2), size(x, 2))
+      type(rule_type) :: rule
+      real(wp) :: n(size(x, 2)), volume
+      integer :: p, i
+
+      matrix = 0.0_wp
+      rule = mass_rule(shape%topology)
+      do p = 1, rule%n
+         call sample(shape, x, rule, p, n, volume)
+         do i = 1, size(n)
+            matrix(:, i) = matrix(:, i) + volume*n(i)*n
+         end do
+      end do
+   end function mass_matrix
+
+   !> The volume shared among the nodes, all shares positive: row sums of the mass matrix, or in
+   !> proportion to its diagonal where there are middle nodes (Hinton, Rock and Zienkiewicz).
+   pure function lumped_mass(shape, x) result(share)
+      type(solid_shape_type), intent(in) :: shape
+      real(wp), intent(in) :: x(:, :)           !! (2, n_nodes)
+      real(wp) :: share(size(x, 2))
+      real(wp) :: matrix(size(x, 2), size(x, 2))
+      integer :: i
+
+      matrix = mass_matrix(shape, x)
+      if (shape%topology <= quad4) then
+         share = sum(matrix, 1)
+      else
+         share = [(matrix(i, i), i=1, size(share))]
+         share = share*(sum(matrix)/sum(share))
+      end if
+   end function lumped_mass
+
+   !> Integral of N over the volume: what a force per volume gives the nodes.
+   pure function volume_shares(shape, x) result(share)
+      type(solid_shape_type), intent(in) :: shape
+      real(wp), intent(in) :: x(:, :)           !! (2, n_nodes)
+      real(wp) :: share(size(x, 2))
+
+      share = sum(mass_matrix(shape, x), 1)
+   end function volume_shares
+
+   !> Integral of N times the distance vector from an axis. An axisymmetric solid turns about its
+   !> own axis of symmetry, whatever the arguments say.
+   pure function centrifugal_force(shape, x, point, axis) result(force)
+      type(solid_shape_type), intent(in) :: shape
+      real(wp), intent(in) :: x(:, :)           !! (2, n_nodes)
+      real(wp), intent(in) :: point(3)
+      real(wp), intent(in) :: axis(3)           !! unit vector
+      real(wp) :: force(2, size(x, 2))
+      real(wp) :: distance(3, size(x, 2)), matrix(size(x, 2), size(x, 2))
+      integer :: i
+
+      do i = 1, size(x, 2)
+         if (shape%plane == axisymmetric) then
+            distance(:, i) = [x(1, i), 0.0_wp, 0.0_wp]
+         else
+            distance(:, i) = [x(:, i), 0.0_wp] - point
+            distance(:, i) = distance(:, i) - dot_product(distance(:, i), axis)*axis
+         end if
+      end do
+      matrix = mass_matrix(shape, x)
+      force = matmul(distance(1:2, :), matrix)
+   end function centrifugal_force
+
+   !> Nodal forces of a unit pressure that pushes on an edge of an element numbered
+   !> counterclockwise.
+   pure function edge_force(shape, x, edge) result(force)
+      type(solid_shape_type), intent(in) :: shape
+      real(wp), intent(in) :: x(:, :)           !! (2, n_nodes)
+      integer, intent(in) :: edge               !! from 1 to the number of corners
+      real(wp) :: force(2, size(x, 2))
+      integer :: node(1 + count_nodes(shape%topology)/count_corners(shape%topology))
+      real(wp) :: n(size(node)), tangent(2), s(size(node)), weight(size(node))
+      integer :: p, i
+
+      node = edge_nodes(shape%topology, edge)
+      call line_rule(s, weight)
+      force = 0.0_wp
+      do p = 1, size(s)
+         n = line_functions(size(node), s(p))
+         tangent = matmul(x(:, node), line_derivatives(size(node), s(p)))
+         tangent = tangent*weight(p)*depth_at(shape, dot_product(n, x(1, node)))
+         do i = 1, size(node)
+            force(1, node(i)) = force(1, node(i)) - n(i)*tangent(2)
+            force(2, node(i)) = force(2, node(i)) + n(i)*tangent(1)
+         end do
+      end do
+   end function edge_force
+
+   !> Shape functions and volume at a point of a rule.
+   pure subroutine sample(shape, x, rule, p, n, volume)
+      type(solid_shape_type), intent(in) :: shape
+      real(wp), intent(in) :: x(:, :)
+      type(rule_type), intent(in) :: rule
+      integer, intent(in) :: p
+      real(wp), intent(out) :: n(:)
+      real(wp), intent(out) :: volume
+      real(wp) :: unused(2, size(x, 2)), det_j
+
+      n = shape_functions(shape%topology, rule%point(:, p))
+      call map_derivatives(shape%topology, x, rule%point(:, p), unused, det_j)
+      volume = rule%weight(p)*det_j*depth_at(shape, dot_product(n, x(1, :)))
+   end subroutine sample
+
+end module solid_integrals
