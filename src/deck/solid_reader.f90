@@ -153,8 +153,9 @@ contains
       if (.not. section%b_bar) return
       do i = 1, size(kinds)
          if (takes_b_bar(kinds(i))) cycle
-         call fail_at(error, source, parameter_place(card, 'BBAR'), 'BBAR is for CPE4 and CAX4, '// &
-               'the set has '//kind_name(kinds(i)), cure='remove BBAR, or give each type its set')
+         call fail_at(error, source, parameter_place(card, 'BBAR'), &
+               'BBAR is for CPE4 and CAX4, the set has '//kind_name(kinds(i)), &
+               cure='remove BBAR, or give each type its set')
          return
       end do
    end subroutine read_b_bar

@@ -225,7 +225,8 @@ contains
       type(fields_type), intent(in) :: fields
       type(source_type), intent(in) :: source
       type(error_type), allocatable, intent(out) :: error
-      character(len=*), parameter :: line = 'a line is: dt, T[, dt min, dt max] with dt between them'
+      character(len=*), parameter :: line = &
+            'a line is: dt, T[, dt min, dt max] with dt between them'
 
       if (step%direct .and. fields%n > 2) then
          call fail_at(error, source, field_place(fields, 3), &
