@@ -9,7 +9,7 @@ module card_rules
 
    public :: check_keyword, check_card, usage_of, name_of, is_note_card
 
-   integer, parameter :: rule_length = 150
+   integer, parameter :: rule_length = 200
 
    !> keyword ; level ; parameters ; data line, "-" where there is none, "text" where anything goes.
    !! Levels: model, step, both, any; note: accepted without effect; ~: does not work yet.
@@ -23,11 +23,12 @@ module card_rules
          'ELSET;model;ELSET=!/GENERATE;element ids and sets, or with GENERATE '// &
          'first, last[, step]', &
          'ELEMENT;model;TYPE=!/ELSET=;id, nodes', &
-         'SOLID SECTION;model;ELSET=!/MATERIAL=!/~ELEMENTS=;area', &
+         'SOLID SECTION;model;ELSET=!/MATERIAL=!/ELEMENTS=/BBAR=/OFFSET=;thickness, '// &
+         'or area of a truss', &
          'MATERIAL;model;NAME=!;-', &
          'ELASTIC;model;TYPE=;E, nu', &
          'DENSITY;model;;rho', &
-         'PLASTIC;~;HARDENING=;stress, plastic strain', &
+         'PLASTIC;model;HARDENING=;yield stress, plastic strain', &
          'DAMPING;model;ALPHA=/BETA=;-', &
          'SPRING;model;ELSET=!/NONLINEAR;the freedoms (none for SPRINGA), then '// &
          'the stiffness, or with NONLINEAR lines of force, elongation', &
@@ -51,15 +52,17 @@ module card_rules
          'GAP;model;ELSET=!/INTERACTION=!;clearance[, nx, ny, nz]', &
          'STEP;any;INC=/NAME=/~NLGEOM?/~PERTURBATION;-', &
          'END STEP;any;;-', &
-         'STATIC;step;DIRECT/~SOLVER=/~TOLERANCE=;dt, T', &
-         'DYNAMIC;step;DIRECT/EXPLICIT/GAMMA=/BETA=/ALPHA=/~ORDER=/~TOLERANCE=/~SOLVER=;dt, T', &
-         'FREQUENCY;~;SOLVER=;number of modes', &
+         'STATIC;step;DIRECT/~SOLVER=;dt, T[, dt min, dt max]', &
+         'DYNAMIC;step;DIRECT/EXPLICIT/GAMMA=/BETA=/ALPHA=/~ORDER=/TOLERANCE=/~SOLVER=;'// &
+         'dt, T[, dt min, dt max]', &
+         'FREQUENCY;step;~SOLVER=;number of modes', &
          'CLOAD;step;AMPLITUDE=/OP=;node or set, dof, force', &
-         'DLOAD;step;AMPLITUDE=/OP=;element set or nothing, GRAV, size, nx, ny, nz', &
-         'NODE PRINT;step;NSET=/FREQUENCY=;U, V, A, RF', &
-         'NODE FILE;step;~NSET=/FREQUENCY=;U, V, A, RF', &
-         'EL PRINT;step;ELSET=/FREQUENCY=;S, E, ENER', &
-         'EL FILE;step;~ELSET=/FREQUENCY=;S, E, ENER', &
+         'DLOAD;step;AMPLITUDE=/OP=;element or set, P1 to P4, BX or BY, value; or GRAV, size, '// &
+         'nx, ny, nz; or CENTRIF, omega squared, x, y, z, ax, ay, az', &
+         'NODE PRINT;step;NSET=/FREQUENCY=/TOTALS=;U, V, A, RF', &
+         'NODE FILE;step;~NSET=/FREQUENCY=/OUTPUT=;U, V, A, RF', &
+         'EL PRINT;step;ELSET=/FREQUENCY=;S, E, PEEQ, ENER', &
+         'EL FILE;step;~ELSET=/FREQUENCY=/OUTPUT=;S, E, PEEQ, ENER', &
          'CONTACT PRINT;step;FREQUENCY=;CF, CDIS', &
          'CONTACT FILE;step;FREQUENCY=;CF, CDIS', &
          'ENERGY PRINT;step;FREQUENCY=/LIMIT=;-', &
@@ -225,7 +228,7 @@ contains
       type(source_type), intent(in) :: source
       type(error_type), allocatable, intent(out) :: error
       character(len=*), parameter :: optional_data(*) = [character(len=word_length) :: &
-            'STATIC', 'BASE MOTION', 'HEADING', 'PARAMETER']
+            'STATIC', 'BASE MOTION', 'SOLID SECTION', 'HEADING', 'PARAMETER']
       character(len=:), allocatable :: usage
 
       usage = usage_of(card%rule)

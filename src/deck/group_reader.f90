@@ -3,7 +3,8 @@ module group_reader
    use errors, only: error_type
    use places, only: fail_at, line_text
    use properties, only: name_length
-   use mesh, only: scheme_implicit, scheme_explicit, mass_lumped, mass_consistent
+   use mesh, only: scheme_implicit, scheme_explicit, scheme_automatic
+   use mesh, only: mass_lumped, mass_consistent
    use model, only: model_type
    use cards, only: deck_type, card_type, count_cards, get_word, get_name_parameter
    use cards, only: parameter_place
@@ -43,10 +44,11 @@ contains
       type(card_type), intent(in) :: card
       type(error_type), allocatable, intent(out) :: error
       character(len=word_length), parameter :: schemes(*) = [character(len=word_length) :: &
-            'IMPLICIT', 'EXPLICIT', '~AUTO']
+            'IMPLICIT', 'EXPLICIT', 'AUTO']
       character(len=word_length), parameter :: masses(*) = [character(len=word_length) :: &
             'LUMPED', 'CONSISTENT']
-      integer, parameter :: scheme_values(*) = [scheme_implicit, scheme_explicit]
+      integer, parameter :: scheme_values(*) = [scheme_implicit, scheme_explicit, &
+            scheme_automatic]
       integer, parameter :: mass_values(0:2) = [0, mass_lumped, mass_consistent]
       character(len=name_length) :: name
       integer :: choice, set
@@ -63,10 +65,11 @@ contains
       call get_word(card, 'MASS', masses, choice, model%source, error)
       if (allocated(error)) return
       model%groups(n)%mass = mass_values(choice)
-      if (model%groups(n)%scheme == scheme_explicit .and. &
+      if (model%groups(n)%scheme /= scheme_implicit .and. &
             model%groups(n)%mass == mass_consistent) then
          call fail_at(error, model%source, parameter_place(card, 'MASS'), &
-               'explicit elements cannot have a consistent mass', cure='write MASS=LUMPED')
+               'explicit elements cannot have a consistent mass, nor can those of SCHEME=AUTO', &
+               cure='write MASS=LUMPED')
       end if
    end subroutine read_group
 

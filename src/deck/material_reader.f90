@@ -3,13 +3,14 @@ module material_reader
    use kinds, only: wp
    use errors, only: error_type
    use places, only: source_type, fail_at
-   use properties, only: material_type
+   use properties, only: material_type, table_type
    use model, only: model_type
    use model_building, only: find_named
    use cards, only: deck_type, card_type, count_cards, get_word, get_real_parameter
    use cards, only: get_name_parameter, parameter_place
    use words, only: word_length
-   use fields, only: fields_type, only_line, field_place, get_reals
+   use fields, only: fields_type, only_line, split_line, check_count, field_place
+   use fields, only: get_reals
    implicit none
    private
 
@@ -31,14 +32,30 @@ contains
          case ('MATERIAL')
             n = n + 1
             call open_material(model, n, deck%cards(i), error)
-         case ('ELASTIC', 'DENSITY', 'DAMPING')
+         case ('ELASTIC', 'DENSITY', 'DAMPING', 'PLASTIC')
             call read_property(model, n, deck, deck%cards(i), error)
          case default
             cycle
          end select
          if (allocated(error)) return
       end do
+      call check_plastic(model, error)
    end subroutine read_materials
+
+   !> Plasticity is told by its stresses: without elasticity it says nothing.
+   subroutine check_plastic(model, error)
+      type(model_type), intent(in) :: model
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      do i = 1, size(model%materials)
+         if (.not. model%materials(i)%has_plastic .or. model%materials(i)%has_elastic) cycle
+         call fail_at(error, model%source, model%materials(i)%place, "material '"// &
+               trim(model%materials(i)%name)//"' has *PLASTIC but no *ELASTIC", &
+               cure='give it E and nu')
+         return
+      end do
+   end subroutine check_plastic
 
    subroutine open_material(model, n, card, error)
       type(model_type), intent(inout) :: model
@@ -73,6 +90,8 @@ contains
          call read_elastic(model%materials(n), deck, card, model%source, error)
       case ('DENSITY')
          call read_density(model%materials(n), deck, card, model%source, error)
+      case ('PLASTIC')
+         call read_plastic(model%materials(n), deck, card, model%source, error)
       case default
          call read_damping(model%materials(n), card, model%source, error)
       end select
@@ -111,6 +130,71 @@ contains
       material%young = values(1)
       material%poisson = values(2)
    end subroutine read_elastic
+
+   !> Lines of yield stress, plastic strain: where they end the stress stays.
+   subroutine read_plastic(material, deck, card, source, error)
+      type(material_type), intent(inout) :: material
+      type(deck_type), intent(in) :: deck
+      type(card_type), intent(in) :: card
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      character(len=word_length), parameter :: laws(*) = [character(len=word_length) :: &
+            'ISOTROPIC', 'KINEMATIC', '~COMBINED']
+      type(fields_type) :: fields
+      real(wp) :: values(2)
+      integer :: choice, line, n
+
+      if (material%has_plastic) then
+         call fail_at(error, source, card%place, 'this material has *PLASTIC already', &
+               cure='keep one of the two')
+         return
+      end if
+      call get_word(card, 'HARDENING', laws, choice, source, error)
+      if (allocated(error)) return
+      material%has_plastic = .true.
+      material%kinematic = choice == 2
+      n = card%last - card%first + 1
+      material%hardening%n = n
+      allocate (material%hardening%x(n), material%hardening%y(n))
+      do line = card%first, card%last
+         call split_line(fields, deck, card, line, source, error)
+         if (allocated(error)) return
+         call check_count(fields, 2, source, error)
+         if (allocated(error)) return
+         call get_reals(fields, 1, 2, 'yield stress, plastic strain', values, source, error)
+         if (allocated(error)) return
+         n = line - card%first + 1
+         material%hardening%y(n) = values(1)
+         material%hardening%x(n) = values(2)
+         call check_yield(material%hardening, n, fields, source, error)
+         if (allocated(error)) return
+      end do
+   end subroutine read_plastic
+
+   !> Point n of a hardening curve, against the one before.
+   subroutine check_yield(curve, n, fields, source, error)
+      type(table_type), intent(in) :: curve
+      integer, intent(in) :: n
+      type(fields_type), intent(in) :: fields
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+
+      if (curve%y(n) <= 0.0_wp) then
+         call fail_at(error, source, field_place(fields, 1), 'the yield stress must be positive', &
+               cure='a line is: yield stress, plastic strain')
+      else if (n == 1) then
+         if (abs(curve%x(1)) > 0.0_wp) call fail_at(error, source, field_place(fields, 2), &
+               'the first plastic strain must be 0', &
+               cure='begin with the stress at which yielding begins, and 0')
+      else if (curve%x(n) <= curve%x(n - 1)) then
+         call fail_at(error, source, field_place(fields, 2), 'the plastic strains must increase', &
+               cure='order the lines of yield stress, plastic strain by strain')
+      else if (curve%y(n) < curve%y(n - 1)) then
+         call fail_at(error, source, field_place(fields, 1), &
+               'softening: the yield stress falls', &
+               cure='write yield stresses that grow or stay; softening has no unique solution')
+      end if
+   end subroutine check_yield
 
    subroutine read_density(material, deck, card, source, error)
       type(material_type), intent(inout) :: material

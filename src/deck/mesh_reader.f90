@@ -3,36 +3,16 @@ module mesh_reader
    use kinds, only: wp
    use errors, only: error_type
    use places, only: place_type, source_type, fail_at, line_text
-   use mesh, only: element_mass, element_spring1, element_spring2, element_springa
-   use mesh, only: element_dashpot1, element_dashpot2, element_dashpota, element_truss, element_gap
    use model, only: model_type
    use cards, only: deck_type, card_type, get_word
    use fields, only: fields_type, split_line, check_count, field_place, is_given
    use fields, only: get_integer, get_reals
-   use words, only: word_length
+   use element_types, only: type_names, kinds_of_types, nodes_of_types, most_nodes
    use text, only: to_text
    implicit none
    private
 
-   public :: read_nodes, read_elements, element_names, kind_names
-
-   integer, parameter :: n_types = 10
-   !> Element types of the deck, the kinds they become and how many nodes they have.
-   character(len=word_length), parameter :: element_names(*) = [character(len=word_length) :: &
-         'MASS', 'SPRING1', 'SPRING2', 'SPRINGA', 'DASHPOT1', 'DASHPOT2', 'DASHPOTA', &
-         'T2D2', 'T3D2', 'GAPUNI', '~T3D3', '~CPE3', '~CPE4', '~CPE6', '~CPE8', '~CPE4R', &
-         '~CPE8R', &
-         '~CPS3', '~CPS4', '~CPS6', '~CPS8', '~CPS4R', '~CPS8R', &
-         '~CAX3', '~CAX4', '~CAX6', '~CAX8', '~CAX4R', '~CAX8R']
-   integer, parameter :: kinds_of_types(n_types) = [element_mass, element_spring1, &
-         element_spring2, element_springa, element_dashpot1, element_dashpot2, element_dashpota, &
-         element_truss, element_truss, element_gap]
-   integer, parameter :: nodes_of_types(n_types) = [1, 1, 2, 2, 1, 2, 2, 2, 2, 2]
-
-   !> Names of the element kinds, for messages.
-   character(len=word_length), parameter :: kind_names(*) = [character(len=word_length) :: &
-         'MASS', 'SPRING1', 'SPRING2', 'SPRINGA', 'DASHPOT1', 'DASHPOT2', 'DASHPOTA', 'T2D2', &
-         'GAPUNI']
+   public :: read_nodes, read_elements
 
 contains
 
@@ -97,11 +77,13 @@ contains
       type(model_type), intent(inout) :: model
       type(deck_type), intent(inout) :: deck
       type(error_type), allocatable, intent(out) :: error
-      integer :: i, n
+      integer :: i, n, n_nodes
 
       n = count_lines(deck, 'ELEMENT')
+      call count_nodes(model, deck, n_nodes, error)
+      if (allocated(error)) return
       allocate (model%elements%id(n), model%elements%kind(n), model%elements%place(n))
-      allocate (model%elements%first(n + 1), model%elements%nodes(2*n))
+      allocate (model%elements%first(n + 1), model%elements%nodes(n_nodes))
       model%elements%first(1) = 1
       do i = 1, deck%n_cards
          if (deck%cards(i)%keyword /= 'ELEMENT') cycle
@@ -119,15 +101,33 @@ contains
       allocate (model%elements%section(n), source=0)
    end subroutine read_elements
 
+   !> Room for the nodes of all elements: as if every line held an element.
+   subroutine count_nodes(model, deck, n_nodes, error)
+      type(model_type), intent(in) :: model
+      type(deck_type), intent(in) :: deck
+      integer, intent(out) :: n_nodes
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i, choice
+
+      n_nodes = 0
+      do i = 1, deck%n_cards
+         if (deck%cards(i)%keyword /= 'ELEMENT') cycle
+         call get_word(deck%cards(i), 'TYPE', type_names, choice, model%source, error)
+         if (allocated(error)) return
+         n_nodes = n_nodes + &
+               nodes_of_types(choice)*(deck%cards(i)%last - deck%cards(i)%first + 1)
+      end do
+   end subroutine count_nodes
+
    subroutine read_element_card(model, deck, card, error)
       type(model_type), intent(inout) :: model
       type(deck_type), intent(in) :: deck
       type(card_type), intent(in) :: card
       type(error_type), allocatable, intent(out) :: error
-      type(place_type) :: places(3), place
-      integer :: numbers(3), choice, line, n
+      type(place_type) :: places(1 + most_nodes), place
+      integer :: numbers(1 + most_nodes), choice, line, n
 
-      call get_word(card, 'TYPE', element_names, choice, model%source, error)
+      call get_word(card, 'TYPE', type_names, choice, model%source, error)
       if (allocated(error)) return
       n = 1 + nodes_of_types(choice)
       line = card%first
@@ -209,13 +209,12 @@ contains
          end if
          model%elements%nodes(first + k - 2) = node
       end do
-      if (size(numbers) == 3) then
-         if (numbers(2) == numbers(3)) then
-            call fail_at(error, model%source, places(3), 'the same node twice in one element', &
-                  cure='join two different nodes')
-            return
-         end if
-      end if
+      do k = 3, size(numbers)
+         if (all(numbers(2:k - 1) /= numbers(k))) cycle
+         call fail_at(error, model%source, places(k), 'the same node twice in one element', &
+               cure='join different nodes')
+         return
+      end do
       model%elements%n = e
       model%elements%id(e) = numbers(1)
       model%elements%kind(e) = kind

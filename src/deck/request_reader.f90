@@ -2,20 +2,21 @@
 module request_reader
    use kinds, only: wp
    use errors, only: error_type
-   use places, only: source_type, fail_at
+   use places, only: source_type, fail_at, note_at
    use properties, only: name_length
-   use steps, only: request_type, step_type, n_quantities
+   use steps, only: request_type, n_quantities, procedure_frequency
    use steps, only: request_node_print, request_node_file, request_element_print
    use steps, only: request_element_file, request_contact_print, request_contact_file
    use steps, only: request_energy_print
    use steps, only: quantity_u, quantity_v, quantity_a, quantity_rf, quantity_s, quantity_e
-   use steps, only: quantity_ener, quantity_cf, quantity_cdis
+   use steps, only: quantity_ener, quantity_cf, quantity_cdis, quantity_peeq
    use model, only: model_type
    use cards, only: deck_type, card_type, get_name_parameter, get_integer_parameter
-   use cards, only: get_real_parameter, parameter_place, has_parameter
+   use cards, only: get_word, get_real_parameter, parameter_place, has_parameter
    use fields, only: fields_type, split_line, field_place, field_text
+   use source_reader, only: add_note
    use set_reader, only: find_node_set, find_element_set
-   use words, only: word_length, find_word, advice, squeezed
+   use words, only: word_length, find_word, advice
    implicit none
    private
 
@@ -24,16 +25,18 @@ module request_reader
    character(len=word_length), parameter :: node_words(*) = [character(len=word_length) :: &
          'U', 'V', 'A', 'RF']
    character(len=word_length), parameter :: element_words(*) = [character(len=word_length) :: &
-         'S', 'E', 'ENER']
+         'S', 'E', 'ENER', 'PEEQ']
    character(len=word_length), parameter :: contact_words(*) = [character(len=word_length) :: &
          'CF', 'CDIS']
    integer, parameter :: node_quantities(*) = [quantity_u, quantity_v, quantity_a, quantity_rf]
-   integer, parameter :: element_quantities(*) = [quantity_s, quantity_e, quantity_ener]
+   integer, parameter :: element_quantities(*) = [quantity_s, quantity_e, quantity_ener, &
+         quantity_peeq]
    integer, parameter :: contact_quantities(*) = [quantity_cf, quantity_cdis]
 
 contains
 
-   !> The requests of a step; of a kind it does not mention it takes over those of the step before.
+   !> The requests of a step; of a kind it does not mention it takes over those of the last
+   !! step of its sort: frequency steps among themselves, the others among themselves.
    subroutine read_requests(model, deck, step, error)
       type(model_type), intent(inout) :: model
       type(deck_type), intent(in) :: deck
@@ -41,10 +44,11 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(request_type), allocatable :: requests(:)
       type(request_type) :: request
-      integer :: i, n, n_old
+      integer :: i, n, n_old, before
 
       n_old = 0
-      if (step > 1) n_old = size(model%steps(step - 1)%requests)
+      before = step_before(model, step)
+      if (before > 0) n_old = size(model%steps(before)%requests)
       n = 0
       do i = 1, deck%n_cards
          if (deck%cards(i)%step == step .and. kind_of(deck%cards(i)%keyword) > 0) n = n + 1
@@ -55,28 +59,95 @@ contains
          if (deck%cards(i)%step /= step .or. kind_of(deck%cards(i)%keyword) == 0) cycle
          call read_request(request, model, deck, deck%cards(i), error)
          if (allocated(error)) return
+         if (model%steps(step)%procedure == procedure_frequency) then
+            call check_frequency(request, model, deck%cards(i), error)
+            if (allocated(error)) return
+         end if
+         call note_habits(model, deck%cards(i), error)
+         if (allocated(error)) return
          n = n + 1
          requests(n) = request
       end do
-      call inherit(model, step, requests, n)
+      if (before > 0) call inherit(model%steps(before)%requests, requests, n)
       model%steps(step)%requests = requests(:n)
    end subroutine read_requests
 
-   subroutine inherit(model, step, requests, n)
+   !> The last step before this one that is a frequency step too, or that is none either.
+   pure function step_before(model, step) result(before)
       type(model_type), intent(in) :: model
       integer, intent(in) :: step
+      integer :: before
+      logical :: wanted
+
+      wanted = model%steps(step)%procedure == procedure_frequency
+      do before = step - 1, 1, -1
+         if ((model%steps(before)%procedure == procedure_frequency) .eqv. wanted) return
+      end do
+      before = 0
+   end function step_before
+
+   subroutine inherit(old, requests, n)
+      type(request_type), intent(in) :: old(:)
       type(request_type), intent(inout) :: requests(:)
       integer, intent(inout) :: n
       integer :: i, n_own
 
-      if (step == 1) return
       n_own = n
-      do i = 1, size(model%steps(step - 1)%requests)
-         if (any(requests(:n_own)%kind == model%steps(step - 1)%requests(i)%kind)) cycle
+      do i = 1, size(old)
+         if (any(requests(:n_own)%kind == old(i)%kind)) cycle
          n = n + 1
-         requests(n) = model%steps(step - 1)%requests(i)
+         requests(n) = old(i)
       end do
    end subroutine inherit
+
+   !> A frequency step has mode shapes: displacements, and the stresses and strains they bring.
+   subroutine check_frequency(request, model, card, error)
+      type(request_type), intent(in) :: request
+      type(model_type), intent(in) :: model
+      type(card_type), intent(in) :: card
+      type(error_type), allocatable, intent(out) :: error
+      logical :: wrong(n_quantities)
+
+      wrong = request%wanted
+      select case (request%kind)
+      case (request_node_print, request_node_file)
+         wrong(quantity_u) = .false.
+         if (any(wrong)) call fail_at(error, model%source, card%place, &
+               'a frequency step has no velocities, accelerations and forces to record', &
+               cure='write U alone')
+      case (request_element_print, request_element_file)
+         wrong([quantity_s, quantity_e]) = .false.
+         if (any(wrong)) call fail_at(error, model%source, card%place, &
+               'a frequency step has no plastic strains and energies to record', &
+               cure='write S, E, or one of them')
+      case default
+         call fail_at(error, model%source, card%place, &
+               'a frequency step has neither contact nor an energy balance', cure='remove the card')
+      end select
+   end subroutine check_frequency
+
+   !> Habits of CalculiX decks that change nothing here.
+   subroutine note_habits(model, card, error)
+      type(model_type), intent(inout) :: model
+      type(card_type), intent(in) :: card
+      type(error_type), allocatable, intent(out) :: error
+      character(len=word_length), parameter :: totals(*) = [character(len=word_length) :: &
+            'YES', 'ONLY', 'NO']
+      character(len=word_length), parameter :: outputs(*) = [character(len=word_length) :: &
+            '2D', '3D']
+      integer :: choice
+
+      call get_word(card, 'TOTALS', totals, choice, model%source, error)
+      if (allocated(error)) return
+      if (choice == 1 .or. choice == 2) call add_note(model%notes, note_at(model%source, &
+            parameter_place(card, 'TOTALS'), &
+            'TOTALS has no effect here: each node has its columns, sum them'))
+      call get_word(card, 'OUTPUT', outputs, choice, model%source, error)
+      if (allocated(error)) return
+      if (choice == 2) call add_note(model%notes, note_at(model%source, &
+            parameter_place(card, 'OUTPUT'), &
+            'OUTPUT=3D has no effect here: plane elements stay plane in the result'))
+   end subroutine note_habits
 
    !> The kind of request a keyword makes, 0 if none.
    pure function kind_of(keyword) result(kind)
@@ -174,14 +245,9 @@ contains
                request%wanted(quantities(choice)) = .true.
                cycle
             end if
-            if (squeezed(field_text(fields, k)) == 'PEEQ') then
-               call fail_at(error, source, field_place(fields, k), &
-                     'PEEQ is known but does not work yet', cure=advice('', list))
-            else
-               call fail_at(error, source, field_place(fields, k), &
-                     "unknown quantity '"//field_text(fields, k)//"'", &
-                     cure=advice(field_text(fields, k), list))
-            end if
+            call fail_at(error, source, field_place(fields, k), &
+                  "unknown quantity '"//field_text(fields, k)//"'", &
+                  cure=advice(field_text(fields, k), list))
             return
          end do
       end do

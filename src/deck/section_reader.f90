@@ -7,15 +7,17 @@ module section_reader
    use properties, only: section_dashpot, section_mass, section_gap
    use mesh, only: element_mass, element_spring1, element_spring2, element_springa
    use mesh, only: element_dashpot1, element_dashpot2, element_dashpota, element_truss, element_gap
+   use mesh, only: element_line
    use model, only: model_type
    use model_building, only: find_named
-   use cards, only: deck_type, card_type, count_cards, get_name_parameter, parameter_place
-   use cards, only: has_parameter
+   use cards, only: deck_type, card_type, get_name_parameter, parameter_place
    use fields, only: fields_type, only_line, field_place, get_reals
    use spring_reader, only: read_spring
    use numbers, only: unit_vector
    use set_reader, only: find_element_set
-   use mesh_reader, only: kind_names
+   use element_types, only: kind_name
+   use solid_reader, only: read_solid, retype
+   use source_reader, only: add_note
    use words, only: advice
    use text, only: to_text
    implicit none
@@ -44,6 +46,7 @@ contains
          call assign_section(model, n, deck%cards(i), error)
          if (allocated(error)) return
       end do
+      call find_lines(model)
       call check_complete(model, error)
    end subroutine read_sections
 
@@ -93,8 +96,10 @@ contains
          card = '*DASHPOT'
       case (section_mass)
          card = '*MASS'
-      case default
+      case (section_gap)
          card = '*GAP'
+      case default
+         card = 'no section: it marks a boundary'
       end select
    end function section_card
 
@@ -110,16 +115,18 @@ contains
          kind = section_spring
       case (element_dashpot1, element_dashpot2, element_dashpota)
          kind = section_dashpot
-      case (element_truss)
-         kind = section_solid
-      case default
+      case (element_gap)
          kind = section_gap
+      case (element_line)
+         kind = 0
+      case default
+         kind = section_solid
       end select
    end function kind_of_section
 
    subroutine read_section(section, model, deck, card, error)
       type(section_type), intent(out) :: section
-      type(model_type), intent(in) :: model
+      type(model_type), intent(inout) :: model   !! solids are re-typed
       type(deck_type), intent(in) :: deck
       type(card_type), intent(in) :: card
       type(error_type), allocatable, intent(out) :: error
@@ -135,6 +142,9 @@ contains
       if (allocated(error)) return
       select case (section%kind)
       case (section_solid)
+         call retype(model%elements%kind, model%element_sets(section%set)%members, card, &
+               model%source, error)
+         if (allocated(error)) return
          call read_solid(section, model, deck, card, error)
       case (section_spring, section_dashpot)
          call read_spring(section, deck, card, &
@@ -159,61 +169,11 @@ contains
          if (kind_of_section(model%elements%kind(e)) == section%kind) cycle
          call fail_at(error, model%source, parameter_place(card, 'ELSET'), &
                'wrong element type: element '//to_text(model%elements%id(e))//' is '// &
-               trim(kind_names(model%elements%kind(e)))//', which takes '// &
+               kind_name(model%elements%kind(e))//', which takes '// &
                section_card(model%elements%kind(e)), cure='give each type a set of its own')
          return
       end do
    end subroutine check_kinds
-
-   subroutine read_solid(section, model, deck, card, error)
-      type(section_type), intent(inout) :: section
-      type(model_type), intent(in) :: model
-      type(deck_type), intent(in) :: deck
-      type(card_type), intent(in) :: card
-      type(error_type), allocatable, intent(out) :: error
-      type(fields_type) :: fields
-      character(len=name_length) :: name
-      real(wp) :: values(1)
-
-      call get_name_parameter(card, 'MATERIAL', name, model%source, error)
-      if (allocated(error)) return
-      section%material = find_named(model%materials, name)
-      if (section%material == 0) then
-         call fail_at(error, model%source, parameter_place(card, 'MATERIAL'), &
-               'no such material: '//trim(name), &
-               cure='define it with *MATERIAL; '//advice(name, [model%materials%name]))
-         return
-      end if
-      call check_material(model, deck, card, section%material, error)
-      if (allocated(error)) return
-      call only_line(fields, deck, card, 1, model%source, error)
-      if (allocated(error)) return
-      call get_reals(fields, 1, 1, 'area', values, model%source, error)
-      if (allocated(error)) return
-      section%area = values(1)
-      if (section%area <= 0.0_wp) call fail_at(error, model%source, field_place(fields, 1), &
-            'the area must be positive', cure='write the area of the truss')
-   end subroutine read_solid
-
-   !> A truss needs elasticity, and density when anything moves.
-   subroutine check_material(model, deck, card, material, error)
-      type(model_type), intent(in) :: model
-      type(deck_type), intent(in) :: deck
-      type(card_type), intent(in) :: card
-      integer, intent(in) :: material
-      type(error_type), allocatable, intent(out) :: error
-
-      associate (used => model%materials(material))
-         if (.not. used%has_elastic) then
-            call fail_at(error, model%source, parameter_place(card, 'MATERIAL'), &
-                  "material '"//trim(used%name)//"' has no *ELASTIC", cure='give it E and nu')
-         else if (.not. used%has_density .and. count_cards(deck, 'DYNAMIC') > 0) then
-            call fail_at(error, model%source, parameter_place(card, 'MATERIAL'), &
-                  "material '"//trim(used%name)//"' has no *DENSITY", &
-                  cure='a *DYNAMIC step needs the density')
-         end if
-      end associate
-   end subroutine check_material
 
    subroutine read_mass(section, deck, card, source, error)
       type(section_type), intent(inout) :: section
@@ -289,15 +249,29 @@ contains
       end do
    end subroutine assign_section
 
+   !> Trusses without a section are lines that mark a boundary, as gmsh writes them.
+   subroutine find_lines(model)
+      type(model_type), intent(inout) :: model
+      integer :: e, n
+
+      do e = 1, model%elements%n
+         if (model%elements%kind(e) /= element_truss .or. model%elements%section(e) > 0) cycle
+         model%elements%kind(e) = element_line
+      end do
+      n = count(model%elements%kind == element_line)
+      if (n > 0) call add_note(model%notes, to_text(n)//' line elements without a section '// &
+            'mark boundaries and carry nothing')
+   end subroutine find_lines
+
    subroutine check_complete(model, error)
       type(model_type), intent(in) :: model
       type(error_type), allocatable, intent(out) :: error
       integer :: e
 
       do e = 1, model%elements%n
-         if (model%elements%section(e) > 0) cycle
+         if (model%elements%section(e) > 0 .or. model%elements%kind(e) == element_line) cycle
          call fail_at(error, model%source, model%elements%place(e), 'element '// &
-               to_text(model%elements%id(e))//' ('//trim(kind_names(model%elements%kind(e)))// &
+               to_text(model%elements%id(e))//' ('//kind_name(model%elements%kind(e))// &
                ') has no section', &
                cure='put it into a set that a '//section_card(model%elements%kind(e))// &
                ' card names')

@@ -341,7 +341,8 @@ contains
 
       set = find_named(model%element_sets, name)
       if (set == 0) call fail_at(error, model%source, place, 'no such element set: '//trim(name), &
-            cure='define it with *ELSET; '//advice(name, [model%element_sets%name]))
+            cure='define it with *ELSET; '//advice(name, pack(model%element_sets%name, &
+            model%element_sets%name(1:8) /= 'element ')))      ! not those of *DLOAD on an element
    end subroutine find_element_set
 
 end module set_reader

@@ -3,20 +3,18 @@ module step_reader
    use kinds, only: wp
    use errors, only: error_type
    use places, only: place_type, source_type, fail_at
-   use steps, only: step_type, procedure_static, procedure_dynamic
-   use histories, only: gravity_type, base_motion_type
+   use steps, only: step_type, procedure_static, procedure_dynamic, procedure_frequency
    use properties, only: name_length
-   use mesh, only: element_mass, element_gap, scheme_explicit, mass_consistent
+   use mesh, only: element_mass, element_gap, element_line, scheme_explicit, mass_consistent
    use model, only: model_type
    use cards, only: deck_type, card_type, get_word, get_name_parameter, get_integer_parameter
    use cards, only: get_real_parameter, parameter_place, has_parameter
-   use fields, only: fields_type, split_line, check_count, only_line, field_place, field_text
-   use fields, only: is_given, get_reals, get_name, get_real
+   use fields, only: fields_type, only_line, field_place, get_reals, get_integer
    use condition_reader, only: read_boundaries, read_initial_conditions, read_loads
    use amplitude_reader, only: find_amplitude
    use request_reader, only: read_requests
-   use load_reader, only: read_gravity, read_base_motions
-   use words, only: word_length
+   use load_reader, only: read_distributed, read_base_motions
+   use words, only: word_length, find_word
    use text, only: to_text
    implicit none
    private
@@ -56,7 +54,7 @@ contains
       if (allocated(error)) return
       call read_loads(step%loads, model, deck, s, error)
       if (allocated(error)) return
-      call read_gravity(step%gravity, model, deck, s, error)
+      call read_distributed(step%gravity, step%distributed, model, deck, s, error)
       if (allocated(error)) return
       call read_base_motions(step%base_motions, model, deck, s, error)
       if (allocated(error)) return
@@ -66,6 +64,11 @@ contains
       if (allocated(error)) return
       call read_op(step%new_gravity, 'DLOAD', model, deck, s, error)
       if (allocated(error)) return
+      step%new_distributed = step%new_gravity
+      if (step%procedure == procedure_frequency) then
+         call check_frequency_step(step, model, s, deck, error)
+         if (allocated(error)) return
+      end if
       model%steps(s) = step
       call read_requests(model, deck, s, error)
    end subroutine read_step
@@ -89,7 +92,7 @@ contains
             if (allocated(error)) return
             call get_integer_parameter(deck%cards(i), 'INC', 1, step%max_increments, &
                   model%source, error)
-         case ('STATIC', 'DYNAMIC')
+         case ('STATIC', 'DYNAMIC', 'FREQUENCY')
             n = n + 1
             call read_procedure(step, n, model, deck, deck%cards(i), error)
          case default
@@ -98,8 +101,36 @@ contains
          if (allocated(error)) return
       end do
       if (n == 0) call fail_at(error, model%source, step%place, 'this step has no procedure', &
-            cure='add *DYNAMIC, DIRECT or *STATIC with its line dt, T')
+            cure='add *DYNAMIC, DIRECT or *STATIC with its line dt, T, or *FREQUENCY')
    end subroutine read_head
+
+   !> Mode shapes are those of the structure at rest: nothing loads or moves it.
+   subroutine check_frequency_step(step, model, s, deck, error)
+      type(step_type), intent(in) :: step
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: s
+      type(deck_type), intent(in) :: deck
+      type(error_type), allocatable, intent(out) :: error
+      character(len=word_length), parameter :: loads(*) = [character(len=word_length) :: &
+            'CLOAD', 'DLOAD', 'BASE MOTION', 'INITIAL CONDITIONS']
+      integer :: i, k
+
+      do i = 1, deck%n_cards
+         if (deck%cards(i)%step /= s) cycle
+         k = find_word(deck%cards(i)%keyword, loads)
+         if (k == 0) cycle
+         call fail_at(error, model%source, deck%cards(i)%place, 'a frequency step takes no *'// &
+               trim(loads(k)), cure='remove the card; mode shapes depend on no load')
+         return
+      end do
+      do i = 1, size(step%boundaries)
+         if (abs(step%boundaries(i)%value) <= 0.0_wp .and. step%boundaries(i)%amplitude == 0) cycle
+         call fail_at(error, model%source, step%boundaries(i)%place, &
+               'a frequency step can fix freedoms, not move them', &
+               cure='leave out the value and AMPLITUDE')
+         return
+      end do
+   end subroutine check_frequency_step
 
    subroutine read_procedure(step, n, model, deck, card, error)
       type(step_type), intent(inout) :: step
@@ -111,13 +142,18 @@ contains
 
       if (n > 1) then
          call fail_at(error, model%source, card%place, 'this step has a procedure already', &
-               cure='write one of *STATIC and *DYNAMIC in a step')
+               cure='write one of *STATIC, *DYNAMIC and *FREQUENCY in a step')
          return
       end if
       step%procedure_place = card%place
       step%time_place = card%place
       step%direct = has_parameter(card, 'DIRECT')
       step%procedure = procedure_static
+      if (card%keyword == 'FREQUENCY') then
+         step%procedure = procedure_frequency
+         call read_modes(step, deck, card, model%source, error)
+         return
+      end if
       if (card%keyword == 'DYNAMIC') then
          step%procedure = procedure_dynamic
          call read_dynamic(step, model, card, error)
@@ -126,7 +162,26 @@ contains
       call read_times(step, deck, card, model%source, error)
    end subroutine read_procedure
 
-   !> dt, T; only a static step may lack the line, it has 1, 1 then.
+   !> The line of *FREQUENCY.
+   subroutine read_modes(step, deck, card, source, error)
+      type(step_type), intent(inout) :: step
+      type(deck_type), intent(in) :: deck
+      type(card_type), intent(in) :: card
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      type(fields_type) :: fields
+
+      call only_line(fields, deck, card, 1, source, error)
+      if (allocated(error)) return
+      call get_integer(fields, 1, 'number of modes', step%n_modes, source, error)
+      if (allocated(error)) return
+      step%time_place = fields%place
+      if (step%n_modes < 1) call fail_at(error, source, field_place(fields, 1), &
+            'the number of modes must be positive', cure='the line is: number of modes')
+   end subroutine read_modes
+
+   !> dt, T; only a static step may lack the line, it has 1, 1 then. Without DIRECT also the
+   !! smallest and the largest increment, 0 where the program is to choose.
    subroutine read_times(step, deck, card, source, error)
       type(step_type), intent(inout) :: step
       type(deck_type), intent(in) :: deck
@@ -134,14 +189,14 @@ contains
       type(source_type), intent(in) :: source
       type(error_type), allocatable, intent(out) :: error
       type(fields_type) :: fields
-      real(wp) :: times(2)
+      real(wp) :: times(4)
 
       if (card%last < card%first) then
          step%dt = 1.0_wp
          step%duration = 1.0_wp
          return
       end if
-      call only_line(fields, deck, card, 2, source, error)
+      call only_line(fields, deck, card, 4, source, error)
       if (allocated(error)) return
       call get_reals(fields, 1, 2, 'dt, T', times, source, error)
       if (allocated(error)) return
@@ -154,11 +209,37 @@ contains
       else if (step%duration < step%dt) then
          call fail_at(error, source, field_place(fields, 2), &
                'the duration must not be shorter than the time step', cure='a line is: dt, T')
-      else if (step%duration/huge(1) > step%dt) then
+      else if (step%direct .and. step%duration/huge(1) > step%dt) then
          call fail_at(error, source, field_place(fields, 1), &
                'the duration takes too many steps', cure='a run has up to 2147483647 steps')
+      else
+         step%dt_min = times(3)
+         step%dt_max = times(4)
+         call check_limits(step, fields, source, error)
       end if
    end subroutine read_times
+
+   !> dt min <= dt <= dt max, of automatic increments only.
+   subroutine check_limits(step, fields, source, error)
+      type(step_type), intent(in) :: step
+      type(fields_type), intent(in) :: fields
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      character(len=*), parameter :: line = &
+            'a line is: dt, T[, dt min, dt max] with dt between them'
+
+      if (step%direct .and. fields%n > 2) then
+         call fail_at(error, source, field_place(fields, 3), &
+               'too many fields: at most 2 here, DIRECT means that all increments are dt', &
+               cure='write dt, T, or remove DIRECT')
+      else if (step%dt_min < 0.0_wp .or. step%dt_min > step%dt) then
+         call fail_at(error, source, field_place(fields, 3), &
+               'the smallest increment must be between 0 and dt', cure=line)
+      else if (step%dt_max < 0.0_wp .or. (step%dt_max > 0.0_wp .and. step%dt_max < step%dt)) then
+         call fail_at(error, source, field_place(fields, 4), &
+               'the largest increment must not be below dt', cure=line)
+      end if
+   end subroutine check_limits
 
    !> The integration parameters of *DYNAMIC.
    subroutine read_dynamic(step, model, card, error)
@@ -168,13 +249,9 @@ contains
       type(error_type), allocatable, intent(out) :: error
       real(wp), parameter :: third = 1.0_wp/3.0_wp
 
-      if (.not. step%direct) then
-         call fail_at(error, model%source, card%place, &
-               '*DYNAMIC with automatic increments is known but does not work yet', &
-               cure='write *DYNAMIC, DIRECT')
-         return
-      end if
       step%explicit = has_parameter(card, 'EXPLICIT')
+      call read_tolerance(step, model%source, card, error)
+      if (allocated(error)) return
       call get_real_parameter(card, 'ALPHA', step%alpha, model%source, error)
       if (allocated(error)) return
       if (step%alpha < -third - epsilon(third) .or. step%alpha > 0.0_wp) then
@@ -199,6 +276,29 @@ contains
          call check_schemes(step, model, card, error)
       end if
    end subroutine read_dynamic
+
+   !> TOLERANCE, and what goes with automatic increments.
+   subroutine read_tolerance(step, source, card, error)
+      type(step_type), intent(inout) :: step
+      type(source_type), intent(in) :: source
+      type(card_type), intent(in) :: card
+      type(error_type), allocatable, intent(out) :: error
+
+      call get_real_parameter(card, 'TOLERANCE', step%tolerance, source, error)
+      if (allocated(error)) return
+      if (step%explicit .and. .not. step%direct) then
+         call fail_at(error, source, parameter_place(card, 'EXPLICIT'), &
+               'automatic increments are for implicit steps', cure='write DIRECT, EXPLICIT')
+      else if (.not. has_parameter(card, 'TOLERANCE')) then
+         return
+      else if (step%direct) then
+         call fail_at(error, source, parameter_place(card, 'TOLERANCE'), &
+               'TOLERANCE means nothing with DIRECT', cure='remove TOLERANCE, or DIRECT')
+      else if (step%tolerance <= 0.0_wp) then
+         call fail_at(error, source, parameter_place(card, 'TOLERANCE'), &
+               'TOLERANCE must be positive', cure='write a number above 0, such as 1e-3')
+      end if
+   end subroutine read_tolerance
 
    !> beta = 0 and explicit elements belong together.
    subroutine check_schemes(step, model, card, error)
@@ -236,7 +336,9 @@ contains
       integer :: i
 
       allocate (implicit_one(model%elements%n))
-      implicit_one = model%elements%kind /= element_mass .and. model%elements%kind /= element_gap
+      do e = 1, model%elements%n
+         implicit_one(e) = all(model%elements%kind(e) /= [element_mass, element_gap, element_line])
+      end do
       do i = 1, size(model%groups)
          if (model%groups(i)%scheme == scheme_explicit) then
             implicit_one(model%element_sets(model%groups(i)%set)%members) = .false.
