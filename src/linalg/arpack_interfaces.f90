@@ -8,7 +8,6 @@ module arpack_interfaces
 
    interface
       ! ARPACK's own argument lists; arrays come by address, without their size
-      ! allow(C071, C081)
       subroutine dsaupd(ido, bmat, n, which, nev, tol, resid, ncv, v, ldv, iparam, ipntr, workd, &
             workl, lworkl, info)
          import :: wp

@@ -1,5 +1,5 @@
 !> All eigenvalues of K x = lambda M x that are finite, by condensation to the equations with mass:
-!> with F the rows and columns of (K - sigma M)^-1 that belong to them, F M z = z / (lambda - sigma).
+!> with F the part of (K - sigma M)^-1 that belongs to them, F M z = z/(lambda - sigma).
 module condensed_eigen
    use kinds, only: wp
    use blas_interfaces, only: dsygv

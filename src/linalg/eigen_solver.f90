@@ -1,7 +1,7 @@
 !> The lowest eigenvalues of K x = lambda M x with skyline matrices, K symmetric and M positive
 !> semi-definite: equations without mass have infinite eigenvalues, which are left out.
 !>
-!> Both methods work with the factors of K - sigma M. The shift sigma is 0 if K is positive definite;
+!> Both methods use the factors of K - sigma M. The shift sigma is 0 if K is positive definite;
 !> else, as for a body that floats, it is a tenth of the highest wanted eigenvalue below zero, found
 !> by starting from a thousandth of trace K / trace M.
 module eigen_solver
@@ -188,7 +188,7 @@ contains
             noise = epsilon(noise)*dot_product(abs(x), size_of_force)
             noise_of_shift = epsilon(noise)*(lambda - self%sigma)**2/(self%lambda(1) - self%sigma)
             if (noise < noise_of_shift) lambda = quotient
-            if (self%sigma < 0.0_wp .and. abs(quotient) <= 100.0_wp*noise) lambda = 0.0_wp
+            if (self%sigma < 0.0_wp .and. abs(quotient) <= 10.0_wp*noise) lambda = 0.0_wp
             size_of_force = size_of_force + abs(lambda)*multiply(absolute_mass, abs(x))
             self%residual(i) = norm2(force - lambda*multiply(mass, x)) &
                   /max(norm2(size_of_force), tiny(1.0_wp))

@@ -12,7 +12,7 @@ module shifted_lanczos
 
    integer, parameter :: max_restarts = 1000
    integer, parameter :: start_given = 1, shift_invert = 3
-   integer, parameter :: multiply_and_solve = -1, solve_only = 1, multiply_only = 2, done = 99
+   integer, parameter :: multiply_and_solve = -1, solve_only = 1, done = 99
 
 contains
 
@@ -72,7 +72,7 @@ contains
       case (solve_only)
          y = work(at(3):at(3) + size(y) - 1)
          call solve(factors, y)
-      case (multiply_only)
+      case default
          y = multiply(mass, work(at(1):at(1) + size(y) - 1))
       end select
       work(at(2):at(2) + size(y) - 1) = y

@@ -1,8 +1,8 @@
 !> Which results a deck asks for, over all its steps together.
 module output_plan
    use model, only: model_type
-   use steps, only: request_type, n_quantities, procedure_frequency, request_node_print, request_element_print, &
-         request_contact_print, request_energy_print
+   use steps, only: request_type, n_quantities, procedure_frequency, request_node_print, &
+         request_element_print, request_contact_print, request_energy_print
    implicit none
    private
 
