@@ -67,7 +67,7 @@ install_packages() {
    has_command apt-get && has_command dpkg-query || {
       find_fortran && has_command cmake && has_command python3 ||
          fail 'no apt-get here: install gfortran >= 12, gcc, make, cmake, HDF5 with Fortran, BLAS,' \
-            'LAPACK and Python 3 with venv by hand'
+            'LAPACK, ARPACK and Python 3 with venv by hand'
       return 0
    }
    missing=
@@ -78,6 +78,7 @@ install_packages() {
    want - libhdf5-dev
    want - "$(blas_package)"
    want - liblapack-dev
+   want - libarpack2-dev
    want python3 python3
    python3 -c 'import venv, ensurepip' 2>/dev/null || missing="$missing python3-venv"
    for package in "$@"; do

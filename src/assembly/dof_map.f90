@@ -51,23 +51,31 @@ contains
       end do
    end subroutine new_dof_map
 
-   !> Numbers the equations for the given prescribed freedoms and constraints, and builds T.
-   pure subroutine number_equations(self, prescribed, constraints)
+   !> Numbers the equations for the given prescribed freedoms and constraints, and builds T. The
+   !> equations go through the nodes in the deck's order or in the one given.
+   pure subroutine number_equations(self, prescribed, constraints, node_order)
       type(dof_map_type), intent(inout) :: self
       logical, intent(in) :: prescribed(:)       !! (n_freedoms)
       type(equation_type), intent(in) :: constraints(:)
-      integer :: number(self%n_freedoms), f
+      integer, intent(in), optional :: node_order(:)   !! (n_nodes) a permutation
+      integer :: number(self%n_freedoms), f, i, j, node
 
       self%prescribed = prescribed
       call list_dependents(self, constraints)
       number = 0
       number(self%dependent) = -1
+      where (prescribed) number = 0
       self%n_eq = 0
-      do f = 1, self%n_freedoms
-         if (prescribed(f)) number(f) = 0
-         if (prescribed(f) .or. number(f) < 0) cycle
-         self%n_eq = self%n_eq + 1
-         number(f) = self%n_eq
+      do j = 1, size(self%freedom, 2)
+         node = j
+         if (present(node_order)) node = node_order(j)
+         do i = 1, 3
+            f = self%freedom(i, node)
+            if (f == 0) cycle
+            if (prescribed(f) .or. number(f) < 0) cycle
+            self%n_eq = self%n_eq + 1
+            number(f) = self%n_eq
+         end do
       end do
       do f = 1, self%n_freedoms
          self%id(self%dof(f), self%node(f)) = max(0, number(f))

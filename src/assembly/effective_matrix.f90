@@ -10,7 +10,8 @@ module effective_matrix
    implicit none
    private
 
-   public :: find_profile, assemble_effective, mark_implicit
+   public :: find_profile, assemble_effective, assemble_sum, mark_implicit
+   public :: couples_equations, equations_of
 
 contains
 
@@ -28,7 +29,7 @@ contains
       end do
       do g = 1, size(structure%groups)
          associate (group => structure%groups(g))
-            if (group%lumped .and. .not. has_implicit_matrix(group)) cycle
+            if (.not. couples_equations(group)) cycle
             do e = 1, size(group%lm, 2)
                call couple(profile, equations_of(structure%map, group%lm(:, e)))
             end do
@@ -64,18 +65,33 @@ contains
       has = group%scheme == scheme_implicit .and. any(group%element%uses(1))
    end function has_implicit_matrix
 
+   !> Whether a group fills entries of the effective matrix beside the diagonal.
+   pure function couples_equations(group) result(couples)
+      type(group_type), intent(in) :: group
+      logical :: couples
+
+      couples = has_implicit_matrix(group) .or. .not. group%lumped
+   end function couples_equations
+
    !> The equations behind some freedoms, constraints followed.
    pure function equations_of(map, freedoms) result(equations)
       type(dof_map_type), intent(in) :: map
       integer, intent(in) :: freedoms(:)
       integer, allocatable :: equations(:)
-      integer :: i
+      integer :: i, n, n_behind
 
-      allocate (equations(0))
+      n = 0
+      do i = 1, size(freedoms)
+         if (freedoms(i) > 0) n = n + map%first(freedoms(i) + 1) - map%first(freedoms(i))
+      end do
+      allocate (equations(n))
+      n = 0
       do i = 1, size(freedoms)
          if (freedoms(i) == 0) cycle
-         equations = [equations, map%equation(map%first(freedoms(i)):map%first(freedoms(i) + 1) &
-               - 1)]
+         n_behind = map%first(freedoms(i) + 1) - map%first(freedoms(i))
+         equations(n + 1:n + n_behind) = map%equation(map%first(freedoms(i)):map%first(freedoms(i) &
+               + 1) - 1)
+         n = n + n_behind
       end do
    end function equations_of
 
@@ -88,7 +104,24 @@ contains
       real(wp), intent(in) :: history(:)         !! (n_history) last accepted
       real(wp), intent(in) :: factors(3)         !! c_mass, c_damping, c_stiffness
       type(skyline_type), intent(out) :: matrix
-      integer :: f, g, j
+      integer :: j
+
+      call assemble_sum(structure, profile, d, history, factors, matrix)
+      if (abs(factors(2)) + abs(factors(3)) > 0.0_wp) return
+      do j = 1, matrix%n
+         if (.not. matrix%values(matrix%last(j)) > 0.0_wp) matrix%values(matrix%last(j)) = 1.0_wp
+      end do
+   end subroutine assemble_effective
+
+   !> The same sum as it is, massless equations with an empty diagonal.
+   pure subroutine assemble_sum(structure, profile, d, history, factors, matrix)
+      type(structure_type), intent(in) :: structure
+      type(profile_type), intent(in) :: profile
+      real(wp), intent(in) :: d(:)               !! (n_freedoms) where the tangent is taken
+      real(wp), intent(in) :: history(:)         !! (n_history) last accepted
+      real(wp), intent(in) :: factors(3)         !! c_mass, c_damping, c_stiffness
+      type(skyline_type), intent(out) :: matrix
+      integer :: f, g
 
       call new_skyline(matrix, profile)
       do f = 1, structure%map%n_freedoms
@@ -97,11 +130,7 @@ contains
       do g = 1, size(structure%groups)
          call add_group(structure, structure%groups(g), d, history, factors, matrix)
       end do
-      if (abs(factors(2)) + abs(factors(3)) > 0.0_wp) return
-      do j = 1, matrix%n
-         if (.not. matrix%values(matrix%last(j)) > 0.0_wp) matrix%values(matrix%last(j)) = 1.0_wp
-      end do
-   end subroutine assemble_effective
+   end subroutine assemble_sum
 
    pure subroutine add_group(structure, group, d, history, factors, matrix)
       type(structure_type), intent(in) :: structure
@@ -111,7 +140,7 @@ contains
       real(wp), allocatable :: local(:, :), total(:, :), part(:, :), memory(:, :)
       integer :: e, n
 
-      if (group%lumped .and. .not. has_implicit_matrix(group)) return
+      if (.not. couples_equations(group)) return
       n = size(group%lm, 1)
       allocate (local(n, size(group%lm, 2)), total(n, n), part(n, n))
       call gather(group, d, local)

@@ -2,10 +2,12 @@
 !> the diagonal, one column after the other.
 module skyline_matrix
    use kinds, only: wp, int64
+   use blas_interfaces, only: ddot, daxpy
    implicit none
    private
 
    public :: skyline_type, new_skyline, profile_type, new_profile, couple
+   public :: profile_entries, profile_cost, diagonal, multiply
 
    !> First row of every column while a profile is being found.
    type :: profile_type
@@ -82,6 +84,55 @@ contains
       address = self%last(max(i, j)) - abs(j - i)
       self%values(address) = self%values(address) + value
    end subroutine add
+
+   !> Stored entries, the diagonal included.
+   pure integer(int64) function profile_entries(self)
+      type(profile_type), intent(in) :: self
+      integer :: j
+
+      profile_entries = 0
+      do j = 1, self%n
+         profile_entries = profile_entries + j - self%first_row(j) + 1
+      end do
+   end function profile_entries
+
+   !> Cost of a factorization: the sum of the squared column heights.
+   pure real(wp) function profile_cost(self)
+      type(profile_type), intent(in) :: self
+      integer :: j
+
+      profile_cost = 0.0_wp
+      do j = 1, self%n
+         profile_cost = profile_cost + real(j - self%first_row(j) + 1, wp)**2
+      end do
+   end function profile_cost
+
+   !> The diagonal of a matrix that is not factorized.
+   pure function diagonal(self) result(values)
+      type(skyline_type), intent(in) :: self
+      real(wp) :: values(self%n)
+
+      values = self%values(self%last)
+   end function diagonal
+
+   !> A x.
+   pure function multiply(self, x) result(y)
+      type(skyline_type), intent(in) :: self
+      real(wp), intent(in) :: x(self%n)
+      real(wp) :: y(self%n)
+      integer :: j, top
+      integer(int64) :: address
+
+      y = 0.0_wp
+      do j = 1, self%n
+         top = self%first_row(j)
+         address = self%last(j) - (j - top)
+         y(j) = y(j) + self%values(self%last(j))*x(j)
+         if (top == j) cycle
+         y(j) = y(j) + ddot(j - top, self%values(address), 1, x(top), 1)
+         call daxpy(j - top, x(j), self%values(address), 1, y(top), 1)
+      end do
+   end function multiply
 
    !> Whether every column has height one.
    pure function is_diagonal(self) result(diagonal)

@@ -1,8 +1,8 @@
 !> Which results a deck asks for, over all its steps together.
 module output_plan
    use model, only: model_type
-   use steps, only: request_type, n_quantities, request_node_print, request_element_print, &
-         request_contact_print, request_energy_print
+   use steps, only: request_type, n_quantities, procedure_frequency, request_node_print, &
+         request_element_print, request_contact_print, request_energy_print
    implicit none
    private
 
@@ -15,6 +15,7 @@ module output_plan
       logical :: contact_print(n_quantities) = .false.
       logical :: file(n_quantities) = .false.       !! fields of the grid
       logical :: energy = .false.
+      logical :: modes_only = .false.               !! a frequency step has the grid to itself
    end type plan_type
 
 contains
@@ -29,6 +30,7 @@ contains
       allocate (self%element_print(n_quantities, model%elements%n))
       self%node_print = .false.
       self%element_print = .false.
+      self%modes_only = any(model%steps%procedure == procedure_frequency)
       do s = 1, size(model%steps)
          do r = 1, size(model%steps(s)%requests)
             call add_request(self, model, model%steps(s)%requests(r))

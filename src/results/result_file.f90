@@ -217,6 +217,7 @@ contains
       energy_due = is_due(requests, [request_energy_print], increment, last)
       frame_due = is_due(requests, [request_node_file, request_element_file, &
             request_contact_file], increment, last) .or. increment == 0 .or. last
+      frame_due = frame_due .and. .not. self%plan%modes_only
       if (energy_due) call record_energy(self, scene, motion%motion%t, error)
       if (allocated(error) .or. .not. (print_due .or. frame_due)) return
       call take_snapshot(snapshot, scene, motion, self%history%needs_reactions &

@@ -3,8 +3,9 @@ module run_report
    use kinds, only: wp, int64
    use text, only: to_text, plural
    use mesh, only: scheme_implicit, scheme_explicit
-   use steps, only: procedure_static
-   use skyline_matrix, only: profile_type
+   use steps, only: procedure_static, procedure_dynamic, procedure_frequency
+   use skyline_matrix, only: profile_entries
+   use equation_order, only: ordering_type, order_names, n_orders
    use surfaces, only: beta_given
    use transformation, only: impact_beta
    use impact_scene, only: event_impact, event_capture, event_release, event_contact, event_limit
@@ -41,27 +42,52 @@ contains
       integer(int64) :: entries
 
       associate (step => simulation%model%steps(i_step), system => simulation%scene%system)
-         line = 'step '//to_text(i_step)//': '//merge('static ', 'dynamic', system%static)
+         line = 'step '//to_text(i_step)//': '//procedure_name(step%procedure)
          if (len_trim(step%name) > 0) line = line//' '//trim(step%name)
-         call say(log, line//', '//plural(count_increments(step), 'increment')//' of ' &
-               //to_text(step%dt)//' over '//to_text(step%duration))
+         if (step%procedure == procedure_frequency) then
+            call say(log, line//', '//plural(step%n_modes, 'mode'))
+         else
+            call say(log, line//', '//plural(count_increments(step), 'increment')//' of ' &
+                  //to_text(step%dt)//' over '//to_text(step%duration))
+         end if
          entries = profile_entries(system%profile)
          call say(log, '  '//plural(system%structure%map%n_eq, 'equation')//', profile ' &
                //to_text(entries)//' entries ('//to_text(8.0e-6_wp*real(entries, wp), 3)//' MB)')
+         call report_ordering(simulation%ordering, log)
          if (.not. system%static) call report_dynamics(simulation, log)
       end associate
    end subroutine report_step
 
-   pure function profile_entries(profile) result(entries)
-      type(profile_type), intent(in) :: profile
-      integer(int64) :: entries
-      integer :: j
+   pure function procedure_name(procedure) result(name)
+      integer, intent(in) :: procedure
+      character(len=:), allocatable :: name
 
-      entries = 0
-      do j = 1, profile%n
-         entries = entries + j - profile%first_row(j) + 1
+      select case (procedure)
+      case (procedure_static)
+         name = 'static'
+      case (procedure_dynamic)
+         name = 'dynamic'
+      case default
+         name = 'frequency'
+      end select
+   end function procedure_name
+
+   !> Profile and factorization cost of each order that was tried.
+   subroutine report_ordering(ordering, log)
+      type(ordering_type), intent(in) :: ordering
+      type(log_type), intent(in) :: log
+      character(len=:), allocatable :: line
+      integer :: i
+
+      if (.not. ordering%compared) return
+      line = '  order of the equations: '//trim(order_names(ordering%taken))//' (profile, cost: '
+      do i = 1, n_orders
+         if (i > 1) line = line//'; '
+         line = line//trim(order_names(i))//' '//to_text(ordering%entries(i))//', ' &
+               //to_text(ordering%cost(i), 3)
       end do
-   end function profile_entries
+      call say(log, line//')')
+   end subroutine report_ordering
 
    subroutine report_dynamics(simulation, log)
       type(simulation_type), intent(in) :: simulation

@@ -7,11 +7,10 @@ module scene_setup
    use places, only: fail_at, note_at, place_type, source_line_type
    use model, only: model_type
    use mesh, only: scheme_implicit, scheme_explicit
-   use steps, only: step_type, procedure_static
+   use steps, only: step_type, procedure_static, procedure_dynamic, procedure_frequency
    use histories, only: boundary_type, nodal_value_type
    use structure, only: structure_type, new_structure, freedom_name, row_sum_mass
-   use dof_map, only: number_equations
-   use effective_matrix, only: find_profile
+   use equation_order, only: ordering_type, order_equations
    use external_load, only: begin_loads
    use prescribed_motion, only: begin_motions, start_motions, prescribed_freedoms
    use equation_of_motion, only: system_type, impose
@@ -37,6 +36,7 @@ module scene_setup
       type(critical_type) :: critical(2)         !! of the implicit and explicit elements, this step
       integer, allocatable :: deck_scheme(:)     !! (n_groups) as the deck has it
       type(source_line_type), allocatable :: remarks(:)
+      type(ordering_type) :: ordering            !! of the equations, this step
       integer(int64) :: n_events(5) = 0          !! by event_ kinds, over the whole run
    end type simulation_type
 
@@ -182,20 +182,22 @@ contains
       real(wp) :: t
 
       t = self%motion%motion%t
+      call check_procedures(self, i_step, error)
+      if (allocated(error)) return
       call check_increments(self, i_step, error)
       if (allocated(error)) return
       associate (step => self%model%steps(i_step), system => self%scene%system)
-         system%static = step%procedure == procedure_static
+         system%static = step%procedure /= procedure_dynamic
          system%newmark%gamma = step%gamma
          system%newmark%beta = step%beta
          system%newmark%alpha = step%alpha
          system%structure%groups%scheme = self%deck_scheme
+         if (step%procedure == procedure_frequency) system%structure%groups%scheme = scheme_implicit
          if (step%explicit) system%structure%groups%scheme = scheme_explicit
          call begin_conditions(self, i_step, t)
-         call number_equations(system%structure%map, &
+         call order_equations(system%structure, &
                prescribed_freedoms(system%motions, system%structure%map%n_freedoms), &
-               self%model%equations)
-         call find_profile(system%structure, system%profile)
+               self%model%equations, system%profile, self%ordering)
          call system%matrices%forget()
          call find_massless(system)
          call begin_loads(system%loads, system%structure, self%model, i_step, t)
@@ -209,6 +211,26 @@ contains
       end associate
    end subroutine begin_step
 
+   !> The frames of a frequency step have frequencies for times: no other step may follow, and none
+   !> before it but static ones.
+   subroutine check_procedures(self, i_step, error)
+      type(simulation_type), intent(inout) :: self
+      integer, intent(in) :: i_step
+      type(error_type), allocatable, intent(out) :: error
+
+      associate (steps => self%model%steps)
+         if (steps(i_step)%procedure /= procedure_frequency) return
+         if (i_step < size(steps) .or. any(steps(:i_step - 1)%procedure /= procedure_static)) then
+            call fail_at(error, self%model%source, steps(i_step)%place, &
+                  'a frequency step stands alone or last after *STATIC steps', &
+                  'take the frequencies in a deck of their own')
+         else if (self%scene%rows%n > 0) then
+            call add_remark(self, note_at(self%model%source, steps(i_step)%procedure_place, &
+                  'contact does not take part in free vibrations: all gaps count as open'))
+         end if
+      end associate
+   end subroutine check_procedures
+
    !> INC must allow all increments of the step.
    subroutine check_increments(self, i_step, error)
       type(simulation_type), intent(in) :: self
@@ -217,6 +239,7 @@ contains
 
       associate (step => self%model%steps(i_step))
          if (step%max_increments == 0 .or. .not. step%direct) return
+         if (step%procedure == procedure_frequency) return
          if (count_increments(step) <= step%max_increments) return
          call fail_at(error, self%model%source, step%place, 'the step needs ' &
                //to_text(count_increments(step))//' increments, INC allows ' &
@@ -260,12 +283,14 @@ contains
       integer, intent(in) :: i_step
       real(wp), intent(in) :: t
       type(boundary_type), allocatable :: boundaries(:)
+      real(wp) :: span(2)
 
       associate (step => self%model%steps(i_step), system => self%scene%system)
          boundaries = step%boundaries
          if (i_step == 1) boundaries = [self%model%boundaries, step%boundaries]
+         span = [t, merge(1.0_wp, step%duration, step%procedure == procedure_frequency)]
          call begin_motions(system%motions, boundaries, system%structure%map%freedom, &
-               self%model%amplitudes, .not. step%new_boundaries, [t, step%duration], system%static)
+               self%model%amplitudes, .not. step%new_boundaries, span, system%static)
          call start_motions(system%motions, t, self%motion%motion%d, self%motion%motion%v)
       end associate
    end subroutine begin_conditions

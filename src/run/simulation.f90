@@ -4,7 +4,7 @@ module simulation
    use errors, only: error_type, new_error, status_numerical
    use text, only: to_text
    use clock, only: seconds_now
-   use steps, only: step_type, request_energy_print
+   use steps, only: step_type, request_energy_print, procedure_frequency
    use motion_state, only: state_type
    use energy_ledger, only: ledger_type, close_increment
    use effective_matrix, only: mark_implicit
@@ -18,6 +18,7 @@ module simulation
          count_increments, last_increment, count_events
    use step_start, only: start_step
    use increments, only: control_type, start_control, take_increment, take_automatic_increment
+   use frequency_run, only: run_frequency_step
    use run_report, only: report_model, report_step, report_notes, report_summary
    implicit none
    private
@@ -151,7 +152,11 @@ contains
       if (allocated(error)) return
       call start_progress(output%progress, command%quiet)
       do i = 1, size(simulation%model%steps)
-         call run_step(simulation, i, output, error)
+         if (simulation%model%steps(i)%procedure == procedure_frequency) then
+            call run_frequency_step(simulation, i, output%results, output%log, error)
+         else
+            call run_step(simulation, i, output, error)
+         end if
          if (allocated(error)) return
       end do
    end subroutine run_steps

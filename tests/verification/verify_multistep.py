@@ -69,7 +69,7 @@ def balance(run):
 
 
 def check_preload(checks):
-    text = mass_deck(step('STATIC', 0.25, 1, '*CLOAD\n1, 1, 2\n')
+    text = mass_deck(step('STATIC, DIRECT', 0.25, 1, '*CLOAD\n1, 1, 2\n')
                      + step('DYNAMIC, DIRECT', '<h>', 4, '*CLOAD, OP=NEW\n1, 1, 0\n'))
     run = run_deck(text, h=0.02)
     t, d = u1(run)
@@ -83,7 +83,7 @@ def check_preload(checks):
     check_order(checks, 'preload, released', text, lambda s: 0.5 * np.cos(2.0 * s), start=1.0)
 
     velocity = '*INITIAL CONDITIONS, TYPE=VELOCITY\n1, 1, 3\n'
-    text = mass_deck(step('STATIC', 1, 1, '*CLOAD\n1, 1, 2\n')
+    text = mass_deck(step('STATIC, DIRECT', 1, 1, '*CLOAD\n1, 1, 2\n')
                      + step('DYNAMIC, DIRECT', '<h>', 4, velocity))
     run = run_deck(text)
     t, d = u1(run)
@@ -99,7 +99,7 @@ def check_preload(checks):
     check_order(checks, 'load that comes on at once in a second dynamic step', text,
                 lambda s: 0.5 - 0.5 * np.cos(2.0 * s), steps=(0.1, 0.05, 0.02, 0.01), start=1.0)
 
-    text = mass_deck(step('STATIC', 1, 1, '*CLOAD\n1, 1, 2\n') + step('DYNAMIC, DIRECT', 0.01, 4),
+    text = mass_deck(step('STATIC, DIRECT', 1, 1, '*CLOAD\n1, 1, 2\n') + step('DYNAMIC, DIRECT', 0.01, 4),
                      v0=3.0)
     checks.close(u1(run_deck(text))[1][1:], d[1:], 1e-13,
                  'initial velocity kept through a static step: same vibration')
@@ -120,7 +120,7 @@ FORCE = 'history/contact_BODY-WALL/CF1'
 
 def check_static_contact(checks):
     prints = PRINTS + '*CONTACT PRINT\nCF, CDIS\n'
-    text = mass_deck(step('STATIC', 0.1, 1, '*CLOAD\n1, 1, -2\n', prints)
+    text = mass_deck(step('STATIC, DIRECT', 0.1, 1, '*CLOAD\n1, 1, -2\n', prints)
                      + step('DYNAMIC, DIRECT', 0.05, 5, '', prints)
                      + step('DYNAMIC, DIRECT', 0.05, 5, '*CLOAD, OP=NEW\n1, 1, 0\n', prints),
                      model=WALL)
@@ -143,7 +143,7 @@ def check_static_contact(checks):
     checks.at_most(balance(run), 1e-13, 'pressed: balance error')
 
     gravity = '*DLOAD\nmass, GRAV, 10, -1, 0, 0\n'
-    run = run_deck(mass_deck(step('STATIC', 1, 1, gravity, prints), mass=3.0, model=WALL))
+    run = run_deck(mass_deck(step('STATIC, DIRECT', 1, 1, gravity, prints), mass=3.0, model=WALL))
     checks.close(u1(run)[1], [0.0, -0.1], 1e-15, 'pressed by gravity: displacement')
     checks.close(run[FORCE], [0.0, 30.0 - 0.4], 1e-13, 'pressed by gravity: contact force')
 
@@ -265,8 +265,8 @@ def check_nonlinear(checks):
     check_order(checks, 'spring with a kink', text, exact, steps=(0.02, 0.01, 0.005, 0.0025))
     run = run_deck(text, h=0.01)
     checks.at_most(np.max(np.abs(run['energy/total'] - 0.5)), 1e-3, 'spring with a kink: energy')
-    text = mass_deck(step('STATIC', 0.5, 1, '*CLOAD\n1, 1, -18\n')
-                     + step('STATIC', 1, 1, '*CLOAD\n1, 1, 5\n')).replace(linear, law)
+    text = mass_deck(step('STATIC, DIRECT', 0.5, 1, '*CLOAD\n1, 1, -18\n')
+                     + step('STATIC, DIRECT', 1, 1, '*CLOAD\n1, 1, 5\n')).replace(linear, law)
     checks.close(u1(run_deck(text))[1], [0.0, -9.0, -18.0, 5.0 / 9.0], 1e-9,
                  'spring with a kink, statically')
 
