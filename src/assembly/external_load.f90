@@ -1,7 +1,8 @@
 !> Applied loads through the steps of a run: nodal forces, gravity, base motion.
 module external_load
    use kinds, only: wp
-   use histories, only: amplitude_type, time_step
+   use histories, only: amplitude_type, time_step, distributed_load_type, load_pressure, &
+         load_body, load_centrifugal
    use amplitude_value, only: amplitude_at
    use model, only: model_type
    use steps, only: step_type, procedure_static
@@ -14,7 +15,8 @@ module external_load
    !> A pattern of forces times a factor of time.
    type :: load_type
       integer :: kind = 0                        !! one of the kind_ parameters
-      integer :: set = 0                         !! element set of a gravity load
+      integer :: set = 0                         !! element set of gravity or a distributed load
+      integer :: label = 0                       !! edge of a pressure, negative for other kinds
       real(wp), allocatable :: pattern(:)        !! (n_freedoms) at full size
       real(wp), allocatable :: start(:)          !! (n_freedoms) what it is ramped from
       logical :: ramped = .false.
@@ -27,6 +29,7 @@ module external_load
    integer, parameter :: kind_point = 1
    integer, parameter :: kind_gravity = 2
    integer, parameter :: kind_base = 3
+   integer, parameter :: kind_distributed = 4
 
    !> All loads in force.
    type :: load_set_type
@@ -51,6 +54,7 @@ contains
          call hold_earlier(self, step, t)
          call add_point_loads(self, structure, model, step, t)
          call add_gravity(self, structure, model, step, t)
+         call add_distributed(self, structure, model, step, t)
          do i = 1, size(step%base_motions)
             call append(self, kind_base, base_pattern(structure, step%base_motions(i)%dof, &
                   step%base_motions(i)%scale))
@@ -77,6 +81,7 @@ contains
          keep = self%loads(i)%kind /= kind_base
          if (self%loads(i)%kind == kind_point) keep = .not. step%new_loads
          if (self%loads(i)%kind == kind_gravity) keep = .not. step%new_gravity
+         if (self%loads(i)%kind == kind_distributed) keep = .not. step%new_distributed
          if (.not. keep) cycle
          n = n + 1
          kept(n) = self%loads(i)
@@ -96,29 +101,117 @@ contains
       type(model_type), intent(in) :: model
       type(step_type), intent(in) :: step
       real(wp), intent(in) :: t
-      real(wp) :: earlier(structure%map%n_freedoms), weight(2)
-      integer :: i, j, n_earlier
+      integer :: i, n_earlier
 
       n_earlier = size(self%loads)
       do i = 1, size(step%gravity)
-         earlier = 0.0_wp
-         do j = 1, n_earlier
-            if (self%loads(j)%kind /= kind_gravity) cycle
-            if (self%loads(j)%set /= step%gravity(i)%set) cycle
-            weight = weights(self%loads(j), t)
-            earlier = earlier + weight(1)*self%loads(j)%start + weight(2)*self%loads(j)%pattern
-            self%loads(j)%start = 0.0_wp
-            self%loads(j)%pattern = 0.0_wp
-         end do
          call append(self, kind_gravity, gravity_pattern(structure, model, step%gravity(i)%set, &
                step%gravity(i)%acceleration))
-         associate (load => self%loads(size(self%loads)))
-            load%set = step%gravity(i)%set
-            call give_time(load, model, step%gravity(i)%amplitude, t, step)
-            if (load%ramped) load%start = earlier
-         end associate
+         self%loads(size(self%loads))%set = step%gravity(i)%set
+         call replace_earlier(self, n_earlier, model, step, step%gravity(i)%amplitude, t)
       end do
    end subroutine add_gravity
+
+   !> Pressures, body forces and rotations; each replaces that of earlier steps with its set and
+   !> label.
+   subroutine add_distributed(self, structure, model, step, t)
+      type(load_set_type), intent(inout) :: self
+      type(structure_type), intent(in) :: structure
+      type(model_type), intent(in) :: model
+      type(step_type), intent(in) :: step
+      real(wp), intent(in) :: t
+      integer :: i, n_earlier
+
+      n_earlier = size(self%loads)
+      do i = 1, size(step%distributed)
+         associate (load => step%distributed(i))
+            call append(self, kind_distributed, distributed_pattern(structure, model, load))
+            self%loads(size(self%loads))%set = load%set
+            self%loads(size(self%loads))%label = label_of(load)
+            call replace_earlier(self, n_earlier, model, step, load%amplitude, t)
+         end associate
+      end do
+   end subroutine add_distributed
+
+   !> What tells distributed loads on one set apart: the edge, the direction of a body force.
+   pure function label_of(load) result(label)
+      type(distributed_load_type), intent(in) :: load
+      integer :: label
+
+      label = load%edge
+      if (load%kind == load_body) label = -1 - findloc(abs(load%body) > 0.0_wp, .true., dim=1)
+      if (load%kind == load_centrifugal) label = -9
+   end function label_of
+
+   !> The load appended last takes the place of those of the same kind, set and label among the
+   !> first `n_earlier`: ramped, it starts from their size.
+   subroutine replace_earlier(self, n_earlier, model, step, amplitude, t)
+      type(load_set_type), intent(inout) :: self
+      integer, intent(in) :: n_earlier
+      type(model_type), intent(in) :: model
+      type(step_type), intent(in) :: step
+      integer, intent(in) :: amplitude
+      real(wp), intent(in) :: t
+      real(wp) :: weight(2)
+      integer :: j, last
+
+      last = size(self%loads)
+      call give_time(self%loads(last), model, amplitude, t, step)
+      do j = 1, n_earlier
+         if (self%loads(j)%kind /= self%loads(last)%kind) cycle
+         if (self%loads(j)%set /= self%loads(last)%set) cycle
+         if (self%loads(j)%label /= self%loads(last)%label) cycle
+         weight = weights(self%loads(j), t)
+         if (self%loads(last)%ramped) self%loads(last)%start = self%loads(last)%start &
+               + weight(1)*self%loads(j)%start + weight(2)*self%loads(j)%pattern
+         self%loads(j)%start = 0.0_wp
+         self%loads(j)%pattern = 0.0_wp
+      end do
+   end subroutine replace_earlier
+
+   !> Nodal forces of a distributed load on the elements of its set (0: all).
+   function distributed_pattern(structure, model, load) result(pattern)
+      type(structure_type), intent(in) :: structure
+      type(model_type), intent(in) :: model
+      type(distributed_load_type), intent(in) :: load
+      real(wp) :: pattern(structure%map%n_freedoms)
+      logical :: member(model%elements%n), exists
+      real(wp), allocatable :: local(:)
+      integer :: g, e
+
+      member = load%set == 0
+      if (load%set > 0) member(model%element_sets(load%set)%members) = .true.
+      pattern = 0.0_wp
+      do g = 1, size(structure%groups)
+         associate (group => structure%groups(g))
+            allocate (local(size(group%lm, 1)))
+            do e = 1, size(group%member)
+               if (.not. member(group%member(e))) cycle
+               select case (load%kind)
+               case (load_pressure)
+                  call group%element%edge_load(e, load%edge, load%value, local, exists)
+               case (load_body)
+                  call group%element%body_load(e, load%body, local)
+               case default
+                  call group%element%centrifugal_load(e, load%value, load%point, load%axis, local)
+               end select
+               call scatter_one(group%lm(:, e), local, pattern)
+            end do
+            deallocate (local)
+         end associate
+      end do
+   end function distributed_pattern
+
+   pure subroutine scatter_one(lm, local, force)
+      integer, intent(in) :: lm(:)
+      real(wp), intent(in) :: local(:)
+      real(wp), intent(inout) :: force(:)
+      integer :: i
+
+      do i = 1, size(lm)
+         if (lm(i) > 0) force(lm(i)) = force(lm(i)) + local(i)
+      end do
+   end subroutine scatter_one
 
    !> Loads on one freedom in one step add up; they replace those of earlier steps there.
    subroutine add_point_loads(self, structure, model, step, t)
