@@ -129,16 +129,16 @@ contains
 
       subroutine append(equations)
          integer, intent(in) :: equations(:)
-         integer :: i
+         integer :: i, last_node
 
          n = n + 1
          if (pass == 2) first(n) = m + 1
+         last_node = 0
          do i = 1, size(equations)
-            if (i > 1) then
-               if (node_of(equations(i)) == node_of(equations(i - 1))) cycle
-            end if
+            if (node_of(equations(i)) == last_node) cycle
+            last_node = node_of(equations(i))
             m = m + 1
-            if (pass == 2) member(m) = node_of(equations(i))
+            if (pass == 2) member(m) = last_node
          end do
       end subroutine append
 
