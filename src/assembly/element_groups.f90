@@ -8,7 +8,8 @@ module element_groups
    use model, only: model_type
    use mesh, only: element_mass, element_spring1, element_spring2, element_springa, &
          element_dashpot1, element_dashpot2, element_dashpota, element_truss, element_gap, &
-         element_line, is_solid_kind, scheme_implicit, scheme_explicit, mass_consistent
+         element_line, is_solid_kind, scheme_implicit, scheme_explicit, &
+         scheme_automatic, mass_consistent
    use properties, only: section_type, material_type
    use element_interface, only: element_type
    use axial_kinematics, only: one_freedom, two_freedoms, line_of_action
@@ -38,16 +39,21 @@ module element_groups
 contains
 
    !> Makes the groups of a model. A line element of no length is an error at its line.
-   subroutine build_groups(groups, model, lumped_default, error)
+   subroutine build_groups(groups, model, lumped_default, error, automatic)
       type(group_type), allocatable, intent(out) :: groups(:)
       type(model_type), intent(in) :: model
       logical, intent(in) :: lumped_default      !! mass of groups that do not say which
       type(error_type), allocatable, intent(out) :: error
+      integer, intent(in), optional :: automatic(:)   !! (n_elements) scheme in place of AUTO
       integer, allocatable :: key(:)
       integer :: e, g, n_groups, scheme_of(model%elements%n)
       logical :: lumped_of(model%elements%n)
 
       call resolve_schemes(model, lumped_default, scheme_of, lumped_of)
+      if (present(automatic)) then
+         where (scheme_of == scheme_automatic) scheme_of = automatic
+      end if
+      where (scheme_of == scheme_automatic) scheme_of = scheme_explicit
       call number_groups(model, scheme_of, lumped_of, key, n_groups)
       allocate (groups(n_groups))
       do g = 1, n_groups
@@ -75,7 +81,7 @@ contains
       scheme_of = scheme_implicit
       lumped_of = lumped_default
       do g = 1, size(model%groups)
-         lumped = lumped_default .or. model%groups(g)%scheme == scheme_explicit
+         lumped = lumped_default .or. model%groups(g)%scheme /= scheme_implicit
          if (model%groups(g)%mass /= 0) lumped = model%groups(g)%mass /= mass_consistent
          scheme_of(model%element_sets(model%groups(g)%set)%members) = model%groups(g)%scheme
          lumped_of(model%element_sets(model%groups(g)%set)%members) = lumped

@@ -14,7 +14,7 @@ module structure
 
    public :: structure_type, new_structure
    public :: elastic_force, damping_force, inertia_force, gather
-   public :: strain_energy, plastic_work, group_history, freedom_name, row_sum_mass
+   public :: strain_energy, plastic_work, group_history, freedom_name, diagonal_mass, least_mass
 
    !> Everything that does not change from step to step, and the numbering that may.
    type :: structure_type
@@ -30,10 +30,11 @@ module structure
 contains
 
    !> Builds groups, freedoms and mass. Errors: zero-length elements, empty freedoms.
-   subroutine new_structure(self, model, error)
+   subroutine new_structure(self, model, error, automatic)
       type(structure_type), intent(out) :: self
       type(model_type), intent(in) :: model
       type(error_type), allocatable, intent(out) :: error
+      integer, intent(in), optional :: automatic(:)   !! (n_elements) scheme in place of AUTO
       logical, allocatable :: needed(:, :)
       logical :: lumped_default
       integer :: i, g
@@ -42,7 +43,7 @@ contains
       do i = 1, size(model%steps)
          lumped_default = lumped_default .or. model%steps(i)%explicit
       end do
-      call build_groups(self%groups, model, lumped_default, error)
+      call build_groups(self%groups, model, lumped_default, error, automatic)
       if (allocated(error)) return
       call find_needed_freedoms(model, self%groups, needed)
       call new_dof_map(self%map, needed)
@@ -55,7 +56,11 @@ contains
          self%n_history = self%n_history &
                + self%groups(g)%element%n_history*self%groups(g)%element%n_elements
       end do
-      call lump_mass(self)
+      allocate (self%lumped_mass(self%map%n_freedoms))
+      self%lumped_mass = 0.0_wp
+      do g = 1, size(self%groups)
+         if (self%groups(g)%lumped) call add_lumped(self%groups(g), 1.0_wp, self%lumped_mass)
+      end do
       call check_freedoms(self, model, error)
    end subroutine new_structure
 
@@ -72,29 +77,6 @@ contains
          end do
       end do
    end subroutine locate
-
-   subroutine lump_mass(self)
-      type(structure_type), intent(inout) :: self
-      integer :: g, e, i
-      real(wp), allocatable :: m(:, :)
-
-      allocate (self%lumped_mass(self%map%n_freedoms))
-      self%lumped_mass = 0.0_wp
-      do g = 1, size(self%groups)
-         associate (group => self%groups(g))
-            if (.not. group%lumped) cycle
-            allocate (m(size(group%lm, 1), size(group%lm, 1)))
-            do e = 1, size(group%member)
-               call group%element%mass(e, .true., m)
-               do i = 1, size(m, 1)
-                  if (group%lm(i, e) == 0) cycle
-                  self%lumped_mass(group%lm(i, e)) = self%lumped_mass(group%lm(i, e)) + m(i, i)
-               end do
-            end do
-            deallocate (m)
-         end associate
-      end do
-   end subroutine lump_mass
 
    !> A freedom must have stiffness, damping or mass, unless a condition or constraint holds it.
    subroutine check_freedoms(self, model, error)
@@ -268,21 +250,48 @@ contains
       end do
    end function inertia_force
 
-   !> Mass of each freedom with the consistent groups lumped by row sums.
-   pure function row_sum_mass(self) result(m)
+   !> Mass of each freedom with every group lumped.
+   pure function diagonal_mass(self) result(m)
       type(structure_type), intent(in) :: self
       real(wp) :: m(self%map%n_freedoms)
-      real(wp) :: along(self%map%n_freedoms)
-      integer :: i
+      integer :: g
 
       m = self%lumped_mass
-      if (.not. self%has_consistent_mass) return
-      m = 0.0_wp
-      do i = 1, 3
-         along = merge(1.0_wp, 0.0_wp, self%map%dof == i)
-         m = m + along*inertia_force(self, along)
+      do g = 1, size(self%groups)
+         if (.not. self%groups(g)%lumped) call add_lumped(self%groups(g), 1.0_wp, m)
       end do
-   end function row_sum_mass
+   end function diagonal_mass
+
+   !> A diagonal mass nowhere above the true one: of a consistent matrix at least a share of the
+   !> lumped one is left in any motion.
+   pure function least_mass(self) result(m)
+      type(structure_type), intent(in) :: self
+      real(wp) :: m(self%map%n_freedoms)
+      integer :: g
+
+      m = self%lumped_mass
+      do g = 1, size(self%groups)
+         if (.not. self%groups(g)%lumped) call add_lumped(self%groups(g), &
+               self%groups(g)%element%least_mass_share, m)
+      end do
+   end function least_mass
+
+   !> Adds a part of the lumped mass of a group.
+   pure subroutine add_lumped(group, part, mass)
+      type(group_type), intent(in) :: group
+      real(wp), intent(in) :: part
+      real(wp), intent(inout) :: mass(:)         !! (n_freedoms)
+      real(wp) :: m(size(group%lm, 1), size(group%lm, 1))
+      integer :: e, i
+
+      do e = 1, size(group%member)
+         call group%element%mass(e, .true., m)
+         do i = 1, size(m, 1)
+            if (group%lm(i, e) == 0) cycle
+            mass(group%lm(i, e)) = mass(group%lm(i, e)) + part*m(i, i)
+         end do
+      end do
+   end subroutine add_lumped
 
    !> Strain energy of all groups.
    pure function strain_energy(self, d, history) result(energy)

@@ -8,11 +8,11 @@ module critical_step
    use small_eigen, only: largest_eigenvalue
    use element_groups, only: group_type
    use dof_map, only: dof_map_type
-   use structure, only: structure_type, row_sum_mass
+   use structure, only: structure_type, least_mass
    implicit none
    private
 
-   public :: critical_type, find_critical
+   public :: critical_type, find_critical, find_own_limits
 
    !> What limits the step of the groups of one scheme.
    type :: critical_type
@@ -44,7 +44,7 @@ contains
       real(wp) :: total
       integer :: g
 
-      m = least_mass(structure)
+      m = mass_on_equations(structure)
       k_diagonal = 0.0_wp
       c_diagonal = 0.0_wp
       do g = 1, size(structure%groups)
@@ -61,17 +61,79 @@ contains
       if (total > 0.0_wp) critical%step = sqrt(1.0_wp/(2.0_wp*gamma))*2.0_wp/total
    end subroutine find_critical
 
-   !> A diagonal mass on equations that is nowhere above the true one. The consistent mass of a
-   !> truss
-   !> is at least a third of its row sums; a dependent freedom adds where it follows one master, and
-   !> is left out where it couples several.
-   pure function least_mass(structure) result(m)
+   !> Critical explicit step of each element by itself: on its own lumped mass, or where it has none
+   !> on its share of the masses around; huge where it has no stiffness.
+   subroutine find_own_limits(structure, limits)
+      type(structure_type), intent(in) :: structure   !! equations numbered
+      real(wp), intent(out) :: limits(:)              !! (n_elements of the model)
+      real(wp), dimension(structure%map%n_eq) :: m, k_diagonal, c_diagonal
+      integer :: g
+
+      limits = huge(1.0_wp)
+      m = mass_on_equations(structure)
+      k_diagonal = 0.0_wp
+      c_diagonal = 0.0_wp
+      do g = 1, size(structure%groups)
+         call sum_diagonals(structure, structure%groups(g), k_diagonal, c_diagonal)
+      end do
+      do g = 1, size(structure%groups)
+         call limit_group(structure, structure%groups(g), m, k_diagonal, c_diagonal, limits)
+      end do
+   end subroutine find_own_limits
+
+   subroutine limit_group(structure, group, m, k_diagonal, c_diagonal, limits)
+      type(structure_type), intent(in) :: structure
+      type(group_type), intent(in) :: group
+      real(wp), intent(in) :: m(:), k_diagonal(:), c_diagonal(:)   !! (n_eq)
+      real(wp), intent(inout) :: limits(:)
+      type(critical_type) :: one
+      type(folded_type) :: folded
+      real(wp), dimension(size(group%lm, 1), size(group%lm, 1)) :: k, mass
+      real(wp) :: lambda, rate
+      integer :: e, i
+      logical :: used(size(group%lm, 1))
+
+      do e = 1, size(group%lm, 2)
+         call group%element%largest_stiffness(e, k)
+         call group%element%mass(e, .true., mass)
+         used = [(k(i, i) > 0.0_wp, i=1, size(used))]
+         rate = 0.0_wp
+         if (all([(mass(i, i) > 0.0_wp, i=1, size(used))] .or. .not. used)) then
+            lambda = own_eigenvalue(k, mass, used)
+            if (size(group%damping) > 0) rate = own_eigenvalue(group%damping(:, :, e), mass, used)
+         else
+            call fold(structure%map, group%lm(:, e), k, folded)
+            call bound_element(structure%map, folded, m, k_diagonal, lambda, one%massless_freedom)
+         end if
+         if (all(.not. used) .and. size(group%damping) > 0) then
+            call fold(structure%map, group%lm(:, e), group%damping(:, :, e), folded)
+            call bound_element(structure%map, folded, m, c_diagonal, rate, one%massless_freedom)
+         end if
+         rate = sqrt(lambda + (rate/2.0_wp)**2) + rate/2.0_wp
+         if (rate > 0.0_wp) limits(group%member(e)) = 2.0_wp/rate
+      end do
+   end subroutine limit_group
+
+   !> Largest eigenvalue of an element matrix on the element's own lumped mass.
+   pure function own_eigenvalue(matrix, mass, used) result(lambda)
+      real(wp), intent(in) :: matrix(:, :), mass(:, :)
+      logical, intent(in) :: used(:)
+      real(wp) :: lambda
+      integer :: rows(count(used)), i
+
+      rows = pack([(i, i=1, size(used))], used)
+      lambda = largest_eigenvalue(matrix(rows, rows), [(mass(rows(i), rows(i)), i=1, size(rows))])
+   end function own_eigenvalue
+
+   !> A diagonal mass on equations that is nowhere above the true one: a dependent freedom adds
+   !> where it follows one master, and is left out where it couples several.
+   pure function mass_on_equations(structure) result(m)
       type(structure_type), intent(in) :: structure
       real(wp) :: m(structure%map%n_eq)
       real(wp) :: on_freedoms(structure%map%n_freedoms)
       integer :: f
 
-      on_freedoms = (row_sum_mass(structure) + 2.0_wp*structure%lumped_mass)/3.0_wp
+      on_freedoms = least_mass(structure)
       m = 0.0_wp
       associate (map => structure%map)
          do f = 1, map%n_freedoms
@@ -81,7 +143,7 @@ contains
             end associate
          end do
       end associate
-   end function least_mass
+   end function mass_on_equations
 
    !> T^t matrix T of an element.
    pure subroutine fold(map, lm, matrix, folded)

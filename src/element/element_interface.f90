@@ -27,6 +27,8 @@ module element_interface
       integer :: n_points = 0               !! points of one element with stresses; 0: none
       integer :: n_stresses = 0             !! components worth printing: 1 axial, 4 plane
       logical :: is_solid = .false.         !! stresses can be averaged at nodes
+      !> Smallest eigenvalue of the consistent mass in terms of the lumped one.
+      real(wp) :: least_mass_share = 1.0_wp/3.0_wp
       logical :: linear = .true.            !! internal force proportional to displacement
    contains
       procedure :: uses

@@ -81,6 +81,8 @@ contains
       call new_kinematics(self%kinematics, shape, x)
       self%n_points = size(self%kinematics%volume, 1)
       self%n_stresses = 4
+      ! 1/9 for a square of four nodes, a little less for distorted and axisymmetric elements
+      self%least_mass_share = 0.09_wp
       self%is_solid = .true.
       self%linear = .not. material%plastic
       if (.not. material%plastic) return

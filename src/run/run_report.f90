@@ -9,6 +9,7 @@ module run_report
    use surfaces, only: beta_given
    use transformation, only: impact_beta
    use impact_scene, only: event_impact, event_capture, event_release, event_contact, event_limit
+   use automatic_groups, only: partition_type
    use scene_setup, only: simulation_type, count_increments
    use run_log, only: log_type, say
    use command_line, only: version_text
@@ -31,7 +32,22 @@ contains
             //plural(size(simulation%scene%system%structure%groups), 'group')//', ' &
             //plural(simulation%scene%system%structure%map%n_freedoms, 'freedom')//', ' &
             //plural(simulation%scene%rows%n, 'contact row'))
+      if (simulation%partition%n_elements > 0) call report_partition(simulation%partition, log)
    end subroutine report_model
+
+   !> What SCHEME=AUTO chose, and what it saves.
+   subroutine report_partition(partition, log)
+      type(partition_type), intent(in) :: partition
+      type(log_type), intent(in) :: log
+
+      call say(log, 'SCHEME=AUTO at the step '//to_text(partition%dt)//': ' &
+            //to_text(partition%n_explicit)//' of '//plural(partition%n_elements, 'element') &
+            //' explicit, '//to_text(partition%n_elements - partition%n_explicit)//' implicit')
+      call say(log, '  profile '//to_text(partition%entries(1))//' entries instead of ' &
+            //to_text(partition%entries(2))//' if all were implicit, factorization ' &
+            //to_text(partition%cost(1), 3)//' operations instead of ' &
+            //to_text(partition%cost(2), 3))
+   end subroutine report_partition
 
    !> Procedure, equations, profile, groups, critical step, impact method.
    subroutine report_step(simulation, i_step, log)

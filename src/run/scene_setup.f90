@@ -9,7 +9,7 @@ module scene_setup
    use mesh, only: scheme_implicit, scheme_explicit
    use steps, only: step_type, procedure_static, procedure_dynamic, procedure_frequency
    use histories, only: boundary_type, nodal_value_type
-   use structure, only: structure_type, new_structure, freedom_name, row_sum_mass
+   use structure, only: structure_type, new_structure, freedom_name, diagonal_mass
    use equation_order, only: ordering_type, order_equations
    use external_load, only: begin_loads
    use prescribed_motion, only: begin_motions, start_motions, prescribed_freedoms
@@ -19,6 +19,7 @@ module scene_setup
    use constraint_rows, only: new_rows, row_gaps, gap_size
    use impact_scene, only: scene_type, contact_motion_type, new_contact_motion, merge_gap_tolerance
    use impact_method, only: impact_method_type
+   use automatic_groups, only: partition_type, resolve_automatic
    use impact_factory, only: make_impact_method
    implicit none
    private
@@ -34,6 +35,7 @@ module scene_setup
       class(impact_method_type), allocatable :: method
       type(contact_motion_type) :: motion
       type(critical_type) :: critical(2)         !! of the implicit and explicit elements, this step
+      type(partition_type) :: partition          !! what SCHEME=AUTO chose
       integer, allocatable :: deck_scheme(:)     !! (n_groups) as the deck has it
       type(source_line_type), allocatable :: remarks(:)
       type(ordering_type) :: ordering            !! of the equations, this step
@@ -50,6 +52,8 @@ contains
 
       self%remarks = self%model%notes
       call new_structure(self%scene%system%structure, self%model, error)
+      if (allocated(error)) return
+      call resolve_automatic(self%model, self%scene%system%structure, self%partition, error)
       if (allocated(error)) return
       self%deck_scheme = self%scene%system%structure%groups%scheme
       call find_contact_rows(self%model, self%contact, error)
@@ -192,7 +196,8 @@ contains
          system%newmark%beta = step%beta
          system%newmark%alpha = step%alpha
          system%structure%groups%scheme = self%deck_scheme
-         if (step%procedure == procedure_frequency) system%structure%groups%scheme = scheme_implicit
+         ! without time there is nothing to be explicit in
+         if (system%static) system%structure%groups%scheme = scheme_implicit
          if (step%explicit) system%structure%groups%scheme = scheme_explicit
          call begin_conditions(self, i_step, t)
          call order_equations(system%structure, &
@@ -304,7 +309,7 @@ contains
       if (allocated(system%massless)) deallocate (system%massless)
       allocate (system%massless(system%structure%map%n_eq))
       system%massless = .true.
-      m = row_sum_mass(system%structure)
+      m = diagonal_mass(system%structure)
       associate (map => system%structure%map)
          do f = 1, map%n_freedoms
             if (.not. m(f) > 0.0_wp) cycle

@@ -287,7 +287,8 @@ contains
       longer(n)%procedure = procedure_dynamic
       if (present(procedure)) longer(n)%procedure = procedure
       longer(n)%duration = duration
-      allocate (longer(n)%boundaries(0), longer(n)%loads(0), longer(n)%gravity(0))
+      allocate (longer(n)%boundaries(0), longer(n)%loads(0), longer(n)%gravity(0), &
+            longer(n)%distributed(0))
       allocate (longer(n)%base_motions(0), longer(n)%initial_displacements(0))
       allocate (longer(n)%initial_velocities(0), longer(n)%requests(0))
       call move_alloc(longer, model%steps)
