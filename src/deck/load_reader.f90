@@ -7,6 +7,7 @@ module load_reader
    use mesh, only: set_type, is_solid_kind, solid_plane, solid_topology, axisymmetric, tri3, tri6
    use histories, only: gravity_type, distributed_load_type, base_motion_type
    use histories, only: load_pressure, load_body, load_centrifugal
+   use integer_map, only: integer_map_type
    use model, only: model_type
    use cards, only: deck_type, card_type, get_integer_parameter, parameter_place
    use fields, only: fields_type, split_line, check_count, only_line, field_place, field_text
@@ -24,6 +25,12 @@ module load_reader
 
    character(len=word_length), parameter :: load_words(*) = [character(len=word_length) :: &
          'P1', 'P2', 'P3', 'P4', 'BX', 'BY', 'CENTRIF', 'GRAV']
+   !> The sets of a model while loads are read: those in use, and which element has its own.
+   type :: own_sets_type
+      integer :: n = 0                !! sets in use; the list has room for more
+      type(integer_map_type) :: of    !! element index to the set of it alone
+   end type own_sets_type
+
    integer, parameter :: word_bx = 5, word_by = 6, word_centrif = 7, word_grav = 8
 
 contains
@@ -37,11 +44,12 @@ contains
       integer, intent(in) :: step
       type(error_type), allocatable, intent(out) :: error
       type(fields_type) :: fields
-      integer :: i, n, n_gravity, n_sets, line, amplitude
+      type(own_sets_type) :: own
+      integer :: i, n, n_gravity, line, amplitude
 
       n = count_lines(deck, 'DLOAD', step)
       allocate (gravity(n), distributed(n))
-      n_sets = size(model%element_sets)
+      call find_own_sets(own, model%element_sets)
       call reserve_sets(model%element_sets, n)
       n = 0
       n_gravity = 0
@@ -56,20 +64,32 @@ contains
                n_gravity = n_gravity + 1
                gravity(n_gravity)%amplitude = amplitude
                gravity(n_gravity)%place = fields%place
-               call read_gravity(gravity(n_gravity), model, n_sets, fields, error)
+               call read_gravity(gravity(n_gravity), model, own, fields, error)
             else
                n = n + 1
                distributed(n)%amplitude = amplitude
                distributed(n)%place = fields%place
-               call read_load(distributed(n), model, n_sets, fields, error)
+               call read_load(distributed(n), model, own, fields, error)
             end if
             if (allocated(error)) return
          end do
       end do
       gravity = gravity(:n_gravity)
       distributed = distributed(:n)
-      call reserve_sets(model%element_sets, n_sets - size(model%element_sets))
+      call reserve_sets(model%element_sets, own%n - size(model%element_sets))
    end subroutine read_distributed
+
+   !> The sets that loads of earlier steps made for single elements.
+   subroutine find_own_sets(own, sets)
+      type(own_sets_type), intent(inout) :: own
+      type(set_type), intent(in) :: sets(:)
+      integer :: i
+
+      own%n = size(sets)
+      do i = 1, size(sets)
+         if (sets(i)%name(1:8) == 'element ') call own%of%insert(sets(i)%members(1), i)
+      end do
+   end subroutine find_own_sets
 
    !> Lengthens (or, by a negative number, shortens) the list of sets; the new ones are empty.
    subroutine reserve_sets(sets, n_more)
@@ -94,9 +114,9 @@ contains
    end subroutine reserve_sets
 
    !> The set that field 1 names; an element's id gets a set of its own, named in lower case.
-   subroutine find_elements(model, n_sets, fields, set, error)
+   subroutine find_elements(model, own, fields, set, error)
       type(model_type), intent(inout) :: model
-      integer, intent(inout) :: n_sets   !! sets in use; there is room for one more
+      type(own_sets_type), intent(inout) :: own
       type(fields_type), intent(in) :: fields
       integer, intent(out) :: set
       type(error_type), allocatable, intent(out) :: error
@@ -118,18 +138,21 @@ contains
                'no such element: '//to_text(id), cure='define it with *ELEMENT')
          return
       end if
-      n_sets = n_sets + 1
-      set = n_sets
+      set = own%of%find(e)
+      if (set > 0) return
+      own%n = own%n + 1
+      set = own%n
+      call own%of%insert(e, set)
       model%element_sets(set)%name = 'element '//to_text(id)
       model%element_sets(set)%members = [e]
       model%element_sets(set)%place = fields%place
    end subroutine find_elements
 
    !> Element or set, P1 to P4, BX, BY or CENTRIF, numbers.
-   subroutine read_load(load, model, n_sets, fields, error)
+   subroutine read_load(load, model, own, fields, error)
       type(distributed_load_type), intent(inout) :: load
       type(model_type), intent(inout) :: model
-      integer, intent(inout) :: n_sets
+      type(own_sets_type), intent(inout) :: own
       type(fields_type), intent(in) :: fields
       type(error_type), allocatable, intent(out) :: error
       integer :: word
@@ -141,7 +164,7 @@ contains
                cure=advice(field_text(fields, 2), load_words))
          return
       end if
-      call find_elements(model, n_sets, fields, load%set, error)
+      call find_elements(model, own, fields, load%set, error)
       if (allocated(error)) return
       call check_loaded(load, word, model, fields, error)
       if (allocated(error)) return
@@ -261,10 +284,10 @@ contains
    end function count_lines
 
    !> Element, set or nothing (everything), GRAV, size, direction.
-   subroutine read_gravity(gravity, model, n_sets, fields, error)
+   subroutine read_gravity(gravity, model, own, fields, error)
       type(gravity_type), intent(inout) :: gravity
       type(model_type), intent(inout) :: model
-      integer, intent(inout) :: n_sets
+      type(own_sets_type), intent(inout) :: own
       type(fields_type), intent(in) :: fields
       type(error_type), allocatable, intent(out) :: error
       real(wp) :: values(4)
@@ -272,7 +295,7 @@ contains
       call check_count(fields, 6, model%source, error)
       if (allocated(error)) return
       if (is_given(fields, 1)) then
-         call find_elements(model, n_sets, fields, gravity%set, error)
+         call find_elements(model, own, fields, gravity%set, error)
          if (allocated(error)) return
       end if
       call get_reals(fields, 3, 3, 'size and direction', values, model%source, error)

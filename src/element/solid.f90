@@ -1,6 +1,6 @@
 !> Plane strain, plane stress and axisymmetric solids (CPE, CPS, CAX) of 3, 4, 6 and 8 nodes at
-!> small displacements, elastic or elastic-plastic. x and y are the plane; an axisymmetric solid has its
-!> radius along x and its axis along y, and stands for the full circumference.
+!> small displacements, elastic or elastic-plastic. x and y are the plane; an axisymmetric solid has
+!> its radius along x and its axis along y, and stands for the full circumference.
 module solid
    use kinds, only: wp
    use elastic, only: plane_stress, elastic_matrix, thickness_strain

@@ -11,7 +11,7 @@ module solid_family
    private
 
    public :: n_shapes, get_shape, shape_name, one_element, random_element, make_patch, patch_group
-   public :: material_of, eigenvalues, in_plane_part
+   public :: material_of, eigenvalues, in_plane_part, solution
 
    !> Plane 1 to 3 times tri3, quad4, quad4 reduced, quad4 B-bar, tri6, quad8, quad8 reduced.
    integer, parameter :: n_shapes = 21
@@ -149,9 +149,13 @@ contains
       integer, intent(in) :: ien(:, :)
       type(solid_material_type), intent(in) :: material
       type(solid_type), intent(out) :: element
+      real(wp) :: corners(2, size(ien, 1), size(ien, 2))
+      integer :: e
 
-      call new_solid(element, shape, reshape(x(:, reshape(ien, [size(ien)])), [2, size(ien, 1), size(ien, 2)]), &
-            material, .false.)
+      do e = 1, size(ien, 2)
+         corners(:, :, e) = x(:, ien(:, e))
+      end do
+      call new_solid(element, shape, corners, material, .false.)
    end subroutine patch_group
 
    !> Rows and columns of directions 1 and 2.
@@ -191,5 +195,26 @@ contains
       end do
       lambda = [(a(i, i), i=1, size(lambda))]
    end function eigenvalues
+
+   !> x of a x = b for a symmetric positive definite matrix, by elimination.
+   pure function solution(matrix, b) result(x)
+      real(wp), intent(in) :: matrix(:, :), b(:)
+      real(wp) :: x(size(b))
+      real(wp) :: a(size(b), size(b)), factor
+      integer :: i, j
+
+      a = matrix
+      x = b
+      do j = 1, size(x)
+         do i = j + 1, size(x)
+            factor = a(i, j)/a(j, j)
+            a(i, j:) = a(i, j:) - factor*a(j, j:)
+            x(i) = x(i) - factor*x(j)
+         end do
+      end do
+      do j = size(x), 1, -1
+         x(j) = (x(j) - dot_product(a(j, j + 1:), x(j + 1:)))/a(j, j)
+      end do
+   end function solution
 
 end module solid_family
