@@ -1,97 +1,50 @@
 """A moving picture of a run: animate.py RESULT.h5 [--scale 1] [--every 1] [--fps 25] [-o x.mp4]
 
-Draws the frames of /VTKHDF in the x-y plane: points + scale * U. Rigid planes appear if the file
-has them, gap elements as thin lines, supports as grey squares, and where an impact has just
+Draws the frames of /VTKHDF in the x-y plane, points + scale * U, solids filled. Rigid planes appear
+if the file has them, gap elements as thin lines, supports as grey squares, and where an impact has just
 happened the node is red. Writes a GIF, or with -o NAME.mp4 an MP4 film (needs ffmpeg).
 """
 
 import os
-import re
 
 import numpy as np
+from carom_mesh import VERTEX, Mesh
 from carom_results import BLACK, BLUE, ORANGE, RED, SKY, Results, ScriptError, make_parser, plt, run
 from matplotlib import animation
 from matplotlib.collections import LineCollection, PolyCollection
 
-VERTEX, LINE = 1, 3
-FACES = {5: [0, 1, 2], 9: [0, 1, 2, 3], 22: [0, 3, 1, 4, 2, 5], 23: [0, 4, 1, 5, 2, 6, 3, 7]}
 MOST_FRAMES = 400
 FLASH = 3  # pictures that an impact stays visible
-
-
-def read_mesh(deck):
-    """Places of the nodes by id, and the node pairs of gap elements, as far as numbers tell."""
-    places, gaps, card, parameters = {}, [], "", {}
-    for line in deck.decode("utf-8", "replace").splitlines():
-        if line.lstrip().startswith("*"):
-            if not line.lstrip().startswith("**"):
-                card = re.sub(r"\s", "", line).upper() + ","
-            continue
-        line = re.sub(r"<(.*?)>", lambda name: parameters.get(name[1].strip().upper(), ""), line)
-        try:
-            if card.startswith("*PARAMETER,"):
-                name, value = line.split("=")
-                parameters[name.strip().upper()] = value.strip()
-            elif card.startswith("*NODE,"):
-                values = [float(word) for word in line.split(",") if word.strip()]
-                places[int(values[0])] = np.array((values[1:] + [0.0, 0.0])[:3])
-            elif card.startswith("*ELEMENT,") and "TYPE=GAPUNI," in card:
-                gaps.append([int(word) for word in line.split(",") if word.strip()][1:3])
-        except (ValueError, IndexError):
-            continue  # not a plain number: what is drawn is then a little plainer
-    return places, gaps
 
 
 class Film:
     """The mesh, its frames and what else is to be seen."""
 
     def __init__(self, results, scale):
+        self.mesh = mesh = Mesh(results)
         self.file = results.file
         self.scale = scale
-        grid = self.file.get("VTKHDF")
-        if grid is None or "PointData/U" not in grid or "Steps" not in grid:
-            raise ScriptError(f"'{results.path}' has no frames of U in /VTKHDF (*NODE FILE with U)")
-        self.points = grid["Points"][()]
-        self.n_frames = int(grid["Steps"].attrs["NSteps"])
-        if self.n_frames == 0:
-            raise ScriptError(f"'{results.path}' has no frames yet")
-        self.times = grid["Steps/Values"][: self.n_frames]
-        self.begins = grid["Steps/PointDataOffsets/U"][: self.n_frames]
-        self.values = grid["PointData/U"]
+        self.points, self.times, self.n_frames = mesh.points, mesh.times, mesh.n_frames
         self.events = results.events()
         planes = self.file.get("model/rigid_planes")
         self.planes = np.zeros((0, 6)) if planes is None else np.atleast_2d(planes[()])
-        types, offsets = grid["Types"][()], grid["Offsets"][()]
-        connectivity = grid["Connectivity"][()]
-        cells = [connectivity[a:b] for a, b in zip(offsets[:-1], offsets[1:])]
-        deck = self.file.get("model/deck")
-        places, gaps = read_mesh(b"" if deck is None else bytes(deck[()]))
-        self.point_of = {
-            node: int(np.abs(self.points - place).sum(axis=1).argmin())
-            for node, place in places.items()
-        }
-        gaps = {frozenset(self.point_of.get(node, -1) for node in pair) for pair in gaps}
-        lines = [(i, c[:2]) for i, (c, kind) in enumerate(zip(cells, types)) if kind == LINE]
-        self.gaps = [line for _, line in lines if frozenset(line.tolist()) in gaps]
-        lines = [(i, line) for i, line in lines if frozenset(line.tolist()) not in gaps]
-        self.lines = [line for _, line in lines]
-        self.line_cells = [i for i, _ in lines]
-        self.n_cells = len(types)
-        self.faces = [c[FACES[kind]] for c, kind in zip(cells, types) if kind in FACES]
-        self.vertices = [c[0] for c, kind in zip(cells, types) if kind == VERTEX]
+        ids = self.file.get("model/node_id")
+        self.point_of = {} if ids is None else {node: i for i, node in enumerate(ids[()].tolist())}
+        self.gaps = mesh.lines(False)[1]
+        self.line_cells, self.lines = mesh.lines(True)
+        self.solids = mesh.solids()
+        self.n_solids = sum(len(mesh.block(kind)[0]) for kind in self.solids)
+        self.vertices = mesh.block(VERTEX)[1][:, 0]
 
     def place(self, frame):
         """The x and y of all points in a frame."""
-        begin = int(self.begins[frame])
-        u = self.values[begin : begin + len(self.points)]
-        return (self.points + self.scale * u)[:, :2]
+        return self.mesh.place(frame, self.scale)
 
     def stress(self, frame):
         """The axial stress of the lines in a frame; None without any."""
-        if "CellData/S" not in self.file["VTKHDF"] or not self.lines:
+        if "CellData/S" not in self.mesh.grid or not len(self.lines):
             return None
-        begin = int(self.file["VTKHDF/Steps/CellDataOffsets/S"][frame])
-        return self.file["VTKHDF/CellData/S"][begin : begin + self.n_cells][self.line_cells, 0]
+        return self.mesh.component("Cell", "S11", frame)[self.line_cells]
 
     def hits(self, frame, before):
         """Points with an impact since a frame before; of a gap element, both of its points."""
@@ -168,19 +121,22 @@ class Picture:
         self.axes.grid(False)
         draw_planes(self.axes, film, low, high)
         few = len(film.points) <= 60
-        self.faces = PolyCollection([], facecolor=SKY, edgecolor=BLACK, lw=0.6 if few else 0.25)
+        width = 0.6 if film.n_solids <= 200 else 0.25 if film.n_solids <= 5000 else 0.0
+        self.faces = [PolyCollection([], facecolor=SKY, edgecolor=BLACK if width else SKY, lw=width)
+                      for _ in film.solids]
         self.stressed = film.stress(frames[0]) is not None
         colour = {} if self.stressed else {"color": BLUE}
         self.lines = LineCollection([], lw=3.0 if few else 2.0, **colour)
         self.gaps = LineCollection([], color="0.6", lw=1.0, linestyles="dotted", zorder=1)
         still = film.still(frames)
-        if few and len(still) and not film.faces:
+        if few and len(still) and not film.solids:
             self.axes.scatter(*film.points[still, :2].T, s=160, marker="s", color="0.6", zorder=2)
         self.axes.add_collection(self.gaps)
-        self.axes.add_collection(self.faces)
+        for faces in self.faces:
+            self.axes.add_collection(faces)
         self.axes.add_collection(self.lines)
         self.show_stress(frames)
-        only_chain = not film.faces
+        only_chain = not film.solids
         shown = np.arange(len(film.points)) if only_chain and few else np.array(film.vertices, int)
         self.shown = np.setdiff1d(shown, still)
         size = 90 if len(shown) <= 5 else 30 if len(shown) <= 20 else 8
@@ -205,11 +161,12 @@ class Picture:
     def show(self, frame, before):
         """Draws one frame."""
         place = self.film.place(frame)
-        self.faces.set_verts([place[face] for face in self.film.faces])
-        self.lines.set_segments([place[line] for line in self.film.lines])
+        for kind, faces in zip(self.film.solids, self.faces):
+            faces.set_verts(self.film.mesh.outlines(kind, place, 4))
+        self.lines.set_segments(place[self.film.lines])
         if self.stressed:
             self.lines.set_array(self.film.stress(frame))
-        self.gaps.set_segments([place[line] for line in self.film.gaps])
+        self.gaps.set_segments(place[self.film.gaps])
         self.dots.set_offsets(place[self.shown] if len(self.shown) else np.empty((0, 2)))
         hit = self.film.hits(frame, before)
         self.dots.set_facecolor([RED if point in hit else BLUE for point in self.shown])

@@ -1,8 +1,9 @@
-!> Writes /VTKHDF: the mesh as points, vertices and lines, and frames of fields on it.
+!> Writes /VTKHDF: the mesh as points and cells, and frames of fields on it.
 module grid_recorder
    use kinds, only: wp
    use errors, only: error_type
    use model, only: model_type
+   use mesh, only: is_solid_kind, solid_topology
    use steps, only: quantity_u, quantity_v, quantity_a, quantity_rf, quantity_cf, &
          quantity_cdis, n_quantities
    use contact_pairs, only: contact_pair_list_type
@@ -25,7 +26,10 @@ module grid_recorder
       logical :: needs_reactions = .false.
    end type grid_type
 
-   integer, parameter :: vertex = 1, line = 3
+   !> VTK types of points and lines by their number of nodes, of solids by topology (tri3, quad4,
+   !! tri6, quad8).
+   integer, parameter :: line_types(3) = [1, 3, 21]
+   integer, parameter :: solid_types(4) = [5, 9, 22, 23]
 
    !> Quantities at nodes; those of elements are element_fields' business.
    integer, parameter :: nodal(6) = [quantity_u, quantity_v, quantity_a, quantity_rf, quantity_cf, &
@@ -46,14 +50,13 @@ contains
       type(plan_type), intent(in) :: plan
       logical, intent(in) :: has_solids
       type(error_type), allocatable, intent(out) :: error
-      integer, allocatable :: types(:), offsets(:)
+      integer, allocatable :: types(:), connectivity(:), offsets(:)
       integer :: q
 
       self%needs_reactions = plan%file(quantity_rf)
-      offsets = model%elements%first(:model%elements%n + 1) - 1
-      types = merge(vertex, line, offsets(2:) - offsets(:model%elements%n) == 1)
-      call self%grid%create(file, model%nodes%x(:, :model%nodes%n), types, &
-            model%elements%nodes(:offsets(size(offsets))) - 1, offsets, error)
+      call make_cells(model, types, connectivity, offsets)
+      call self%grid%create(file, model%nodes%x(:, :model%nodes%n), types, connectivity, offsets, &
+            error)
       if (allocated(error)) return
       do q = 1, n_quantities
          if (.not. plan%file(q) .and. q /= quantity_u) cycle
@@ -64,6 +67,40 @@ contains
       call new_element_fields(self%element_fields, self%grid, file, plan%file, model%elements%n, &
             has_solids, error)
    end subroutine new_grid
+
+   !> The elements as VTK cells. Of a line with three nodes VTK wants the middle one last; decks
+   !! differ in that, so the one between the others is looked for.
+   subroutine make_cells(model, types, connectivity, offsets)
+      type(model_type), intent(in) :: model
+      integer, allocatable, intent(out) :: types(:), connectivity(:), offsets(:)
+      integer :: e, n, n_nodes
+
+      n = model%elements%n
+      offsets = model%elements%first(:n + 1) - 1
+      connectivity = model%elements%nodes(:offsets(n + 1)) - 1
+      allocate (types(n))
+      do e = 1, n
+         if (is_solid_kind(model%elements%kind(e))) then
+            types(e) = solid_types(solid_topology(model%elements%kind(e)))
+            cycle
+         end if
+         n_nodes = offsets(e + 1) - offsets(e)
+         types(e) = line_types(n_nodes)
+         if (n_nodes < 3) cycle
+         associate (points => connectivity(offsets(e) + 1:offsets(e + 1)))
+            if (is_between(model%nodes%x(:, points + 1))) points = points([1, 3, 2])
+         end associate
+      end do
+   end subroutine make_cells
+
+   !> Whether the second of three points, rather than the third, lies between the others.
+   pure function is_between(x) result(between)
+      real(wp), intent(in) :: x(3, 3)
+      logical :: between
+
+      between = norm2(x(:, 1) + x(:, 3) - 2.0_wp*x(:, 2)) &
+            < norm2(x(:, 1) + x(:, 2) - 2.0_wp*x(:, 3))
+   end function is_between
 
    subroutine add_field(self, file, q, error)
       type(grid_type), intent(inout) :: self

@@ -30,6 +30,7 @@ module result_file
       type(history_type) :: history
       type(column_table_type) :: energy
       type(column_table_type) :: events
+      integer :: n_elements = 0
    end type result_file_type
 
    integer, parameter :: text_length = 80
@@ -61,6 +62,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       integer :: i
 
+      self%n_elements = model%elements%n
       call new_plan(self%plan, model)
       call self%file%create(path, error)
       if (allocated(error)) return
@@ -195,7 +197,43 @@ contains
       if (allocated(error)) return
       call self%file%write_dataset('/model/implicit', merge(1, 0, implicit_equation), &
             '1 for equations that an implicit element touches', error)
+      if (allocated(error)) return
+      call write_schemes(self, scene, error)
+      if (allocated(error)) return
+      call write_fixed(self, scene, error)
    end subroutine write_system
+
+   !> How each element goes through time.
+   subroutine write_schemes(self, scene, error)
+      type(result_file_type), intent(inout) :: self
+      type(scene_type), intent(in) :: scene
+      type(error_type), allocatable, intent(out) :: error
+      integer :: scheme(self%n_elements), g
+
+      scheme = 0
+      do g = 1, size(scene%system%structure%groups)
+         associate (group => scene%system%structure%groups(g))
+            scheme(group%member) = group%scheme
+         end associate
+      end do
+      call self%file%write_dataset('/model/element_scheme', scheme, &
+            '1 implicit, 2 explicit, 0 neither (gaps, lines), in the order of the cells', error)
+   end subroutine write_schemes
+
+   !> The freedoms that supports hold or move in the first step.
+   subroutine write_fixed(self, scene, error)
+      type(result_file_type), intent(inout) :: self
+      type(scene_type), intent(in) :: scene
+      type(error_type), allocatable, intent(out) :: error
+
+      associate (map => scene%system%structure%map)
+         call self%file%write_dataset('/model/fixed_point', pack(map%node - 1, map%prescribed), &
+               'points (counted from 0) with a freedom that *BOUNDARY holds or moves', error)
+         if (allocated(error)) return
+         call self%file%write_dataset('/model/fixed_dof', pack(map%dof, map%prescribed), &
+               'that freedom: 1, 2, 3 for x, y, z, one for each of fixed_point', error)
+      end associate
+   end subroutine write_fixed
 
    !> Records what is due at the end of an increment (0: the initial state), and all its events.
    subroutine record_increment(self, scene, list, motion, requests, increment, last, error)
