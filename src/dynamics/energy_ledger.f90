@@ -4,7 +4,8 @@
 module energy_ledger
    use kinds, only: wp
    use mesh, only: scheme_implicit, scheme_explicit
-   use structure, only: strain_energy, plastic_work, damping_force, inertia_force
+   use structure, only: strain_energy, plastic_work, group_strain_energy, &
+         group_kinetic_energy, damping_force, inertia_force
    use external_load, only: load_at
    use motion_state, only: state_type
    use equation_of_motion, only: system_type
@@ -13,6 +14,7 @@ module energy_ledger
    private
 
    public :: ledger_type, open_ledger, record_span, record_impact, close_increment
+   public :: group_energies
 
    !> Energies and works since the start of the run.
    type :: ledger_type
@@ -103,5 +105,20 @@ contains
             + self%impact_loss - self%external_work - self%initial
       self%scale = max(self%scale, abs(self%total), abs(self%external_work))
    end subroutine close_increment
+
+   !> Kinetic and strain energy of every group, one after the other.
+   function group_energies(system, state) result(energies)
+      type(system_type), intent(in) :: system
+      type(state_type), intent(in) :: state
+      real(wp) :: energies(2*size(system%structure%groups))
+      integer :: g
+
+      do g = 1, size(system%structure%groups)
+         associate (group => system%structure%groups(g))
+            energies(2*g - 1) = group_kinetic_energy(group, state%v)
+            energies(2*g) = group_strain_energy(group, state%d, state%history)
+         end associate
+      end do
+   end function group_energies
 
 end module energy_ledger

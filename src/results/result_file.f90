@@ -15,6 +15,7 @@ module result_file
    use output_plan, only: plan_type, new_plan, is_due
    use snapshot, only: snapshot_type, take_snapshot
    use history_recorder, only: history_type, new_history, record_history
+   use energy_recorder, only: new_energies, record_energies
    use grid_recorder, only: grid_type, new_grid, record_frame
    implicit none
    private
@@ -34,21 +35,6 @@ module result_file
    end type result_file_type
 
    integer, parameter :: text_length = 80
-
-   character(len=13), parameter :: energy_columns(10) = ['time         ', 'kinetic      ', &
-         'strain       ', 'damping      ', 'plastic      ', 'friction     ', 'impact_loss  ', &
-         'external_work', 'total        ', 'balance_error']
-   character(len=64), parameter :: energy_meanings(10) = [ &
-         'total time                                                      ', &
-         'kinetic energy                                                  ', &
-         'strain energy                                                   ', &
-         'energy taken by damping                                         ', &
-         'energy taken by plastic deformation                             ', &
-         'energy taken by friction                                        ', &
-         'energy taken by impacts and contact forces                      ', &
-         'work of loads, prescribed motion and moving walls               ', &
-         'kinetic and strain energy                                       ', &
-         'total + losses - external work - initial total                  ']
 
 contains
 
@@ -71,27 +57,12 @@ contains
       if (allocated(error)) return
       call new_history(self%history, self%file, model, scene, list, self%plan, error)
       if (allocated(error)) return
-      call new_energy(self, error)
+      if (self%plan%energy) call new_energies(self%energy, self%file, scene, error)
       if (allocated(error)) return
       call new_events(self, error)
       if (allocated(error)) return
       call write_model(self, model, error)
    end subroutine open_results
-
-   subroutine new_energy(self, error)
-      type(result_file_type), intent(inout) :: self
-      type(error_type), allocatable, intent(out) :: error
-      integer :: i
-
-      if (.not. self%plan%energy) return
-      call self%energy%create(self%file, '/energy', 'energies and works since the start', error)
-      if (allocated(error)) return
-      do i = 1, size(energy_columns)
-         call self%energy%add_column(self%file, trim(energy_columns(i)), &
-               trim(energy_meanings(i)), error)
-         if (allocated(error)) return
-      end do
-   end subroutine new_energy
 
    subroutine new_events(self, error)
       type(result_file_type), intent(inout) :: self
@@ -256,7 +227,7 @@ contains
       frame_due = is_due(requests, [request_node_file, request_element_file, &
             request_contact_file], increment, last) .or. increment == 0 .or. last
       frame_due = frame_due .and. .not. self%plan%modes_only
-      if (energy_due) call record_energy(self, scene, motion%motion%t, error)
+      if (energy_due) call record_energies(self%energy, self%file, scene, motion, error)
       if (allocated(error) .or. .not. (print_due .or. frame_due)) return
       call take_snapshot(snapshot, scene, motion, self%history%needs_reactions &
             .or. self%grid%needs_reactions)
@@ -264,20 +235,6 @@ contains
       if (allocated(error)) return
       if (frame_due) call record_frame(self%grid, self%file, scene, list, snapshot, error)
    end subroutine record_increment
-
-   subroutine record_energy(self, scene, t, error)
-      type(result_file_type), intent(inout) :: self
-      type(scene_type), intent(in) :: scene
-      real(wp), intent(in) :: t
-      type(error_type), allocatable, intent(out) :: error
-
-      associate (ledger => scene%ledger)
-         call self%energy%append_row(self%file, [t, ledger%kinetic, ledger%strain, ledger%damping, &
-               ledger%plastic, ledger%friction, ledger%impact_loss, ledger%external_work, &
-               ledger%total, &
-               ledger%balance_error], error)
-      end associate
-   end subroutine record_energy
 
    subroutine record_events(self, scene, list, error)
       type(result_file_type), intent(inout) :: self

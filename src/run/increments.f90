@@ -28,6 +28,7 @@ module increments
       real(wp) :: dt_min = 0.0_wp, dt_max = 0.0_wp
       real(wp) :: tolerance = 0.0_wp             !! of the local displacement error, relative
       real(wp) :: scale = 0.0_wp                 !! largest displacement met
+      real(wp) :: proven = 0.0_wp                !! the last increment that the estimate has passed
       integer :: n_easy = 0                      !! increments in a row that went easily
       integer :: n_cut = 0                       !! increments tried in vain
    end type control_type
@@ -36,6 +37,7 @@ module increments
    real(wp), parameter :: smallest_share = 1.0e-5_wp   !! of the step, default of dt min
    real(wp), parameter :: cut_factor = 0.25_wp         !! after a failure to converge
    real(wp), parameter :: growth_factor = 1.5_wp
+   real(wp), parameter :: round_off = 1.0e-9_wp
    integer, parameter :: easy_iterations = 5
    integer, parameter :: easy_increments = 2
 
@@ -47,6 +49,7 @@ contains
       type(step_type), intent(in) :: step
 
       self%dt = step%dt
+      self%proven = step%dt
       self%dt_min = step%dt_min
       if (.not. self%dt_min > 0.0_wp) self%dt_min = min(step%dt, smallest_share*step%duration)
       self%dt_max = step%dt_max
@@ -124,12 +127,14 @@ contains
          if (allocated(error)) return
       end do
       control%scale = max(control%scale, maxval(abs(simulation%motion%motion%d)))
+      if (ratio > 0.0_wp) control%proven = dt
       call choose_next(simulation, control, dt, ratio, iterations)
    end subroutine take_automatic_increment
 
    !> Local error of the displacement over what is tolerated: for Newmark's method
-   !> (beta - 1/6) h^2 (a1 - a0), of the largest displacement met. An increment with impacts, and a
-   !> static one, has no such estimate.
+   !> (beta - 1/6) h^2 (a1 - a0), of the largest displacement met. A static increment has no such
+   !> estimate, and one with events none that means anything, since the acceleration jumps: it may
+   !> be as large as the last one that passed, or as the deck's first.
    function error_ratio(simulation, control, checkpoint, dt) result(ratio)
       type(simulation_type), intent(in) :: simulation
       type(control_type), intent(in) :: control
@@ -140,7 +145,10 @@ contains
 
       ratio = 0.0_wp
       if (simulation%scene%system%static) return
-      if (simulation%scene%n_events > checkpoint%n_events) return
+      if (simulation%scene%n_events > checkpoint%n_events) then
+         if (dt > control%proven*(1.0_wp + round_off)) ratio = (dt/control%proven)**3
+         return
+      end if
       weight = max(abs(simulation%scene%system%newmark%beta - 1.0_wp/6.0_wp), 1.0_wp/12.0_wp)
       scale = max(control%scale, maxval(abs(simulation%motion%motion%d)))
       if (.not. scale > 0.0_wp) return
