@@ -37,7 +37,7 @@ contains
       logical, intent(in), optional :: held(:)   !! (n_rows) rows held bilaterally, the others free
       type(newmark_type) :: newmark
       real(wp), dimension(size(from%motion%d)) :: fixed, psi, delta
-      real(wp) :: reference
+      real(wp) :: reference, left
       integer :: iteration
 
       newmark = scene%system%newmark
@@ -46,6 +46,7 @@ contains
       call predict_motion(scene%system, from%motion, dt, beta, to%motion)
       fixed = fixed_force(scene%system, from%motion, to%motion)
       reference = 0.0_wp
+      left = huge(left)
       do iteration = 1, scene%system%max_iterations
          psi = residual(scene%system, fixed, from%motion%history, to%motion)
          call prepare_motion(scene%system, dt, beta, to%motion%d, from%motion%history, error)
@@ -59,7 +60,7 @@ contains
          if (scene%system%structure%is_linear) return
          scene%n_iterations = scene%n_iterations + 1
          reference = max(reference, norm2(psi), norm2(fixed))
-         if (has_converged(scene, fixed, from, to, delta, reference)) return
+         if (has_converged(scene, fixed, from, to, delta, reference, left)) return
       end do
       call not_converged(scene, to%motion%t, error)
    end subroutine advance_smoothly
@@ -97,21 +98,28 @@ contains
       delta = delta + matmul(x, lambda)
    end subroutine add_contact
 
-   !> Newton's method has converged when both the correction and the residual are small.
-   function has_converged(scene, fixed, from, to, delta, reference) result(converged)
+   !> Newton's method has converged when both the correction and the residual are small, or when the
+   !> correction is small and the residual has come down to round-off: it falls no further. Nearly
+   !> incompressible solids have such round-off above the tolerance.
+   function has_converged(scene, fixed, from, to, delta, reference, left) result(converged)
       type(scene_type), intent(in) :: scene
       real(wp), intent(in) :: fixed(:), delta(:), reference
       type(contact_motion_type), intent(in) :: from
       type(contact_motion_type), intent(inout) :: to   !! gets the history at its displacements
+      real(wp), intent(inout) :: left            !! residual of the iteration before, then of this
       logical :: converged
-      real(wp) :: psi(size(fixed)), motion
+      real(wp), parameter :: most_round_off = 1.0e-7_wp
+      real(wp) :: psi(size(fixed)), motion, before
 
       motion = norm2(to%motion%a)
       if (scene%system%static) motion = norm2(to%motion%d)
       psi = residual(scene%system, fixed, from%motion%history, to%motion) &
             + row_forces(scene%rows, to%lambda, size(psi))
-      converged = norm2(delta) <= scene%system%tolerance*motion .and. &
-            norm2(reduce(scene%system%structure%map, psi)) <= scene%system%tolerance*reference
+      before = left
+      left = norm2(reduce(scene%system%structure%map, psi))
+      converged = left <= scene%system%tolerance*reference
+      converged = converged .or. (left <= most_round_off*reference .and. left >= 0.5_wp*before)
+      converged = converged .and. norm2(delta) <= scene%system%tolerance*motion
       converged = converged .or. .not. (motion > 0.0_wp .or. reference > 0.0_wp)
    end function has_converged
 
@@ -145,7 +153,7 @@ contains
       type(contact_motion_type), intent(out) :: to
       type(error_type), allocatable, intent(out) :: error
       real(wp), dimension(size(from%motion%d)) :: fixed, psi, delta
-      real(wp) :: reference
+      real(wp) :: reference, left
       integer :: iteration
 
       to = from
@@ -154,6 +162,7 @@ contains
       to%motion%a = 0.0_wp
       fixed = fixed_force(scene%system, from%motion, to%motion)
       reference = 0.0_wp
+      left = huge(left)
       do iteration = 1, scene%system%max_iterations
          psi = residual(scene%system, fixed, from%motion%history, to%motion)
          call prepare_motion(scene%system, dt, 0.25_wp, to%motion%d, from%motion%history, error)
@@ -165,7 +174,7 @@ contains
          if (scene%system%structure%is_linear) return
          scene%n_iterations = scene%n_iterations + 1
          reference = max(reference, norm2(psi), norm2(fixed))
-         if (has_converged(scene, fixed, from, to, delta, reference)) return
+         if (has_converged(scene, fixed, from, to, delta, reference, left)) return
       end do
       call not_converged(scene, to%motion%t, error)
    end subroutine solve_statically
