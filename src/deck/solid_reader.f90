@@ -2,12 +2,13 @@
 module solid_reader
    use kinds, only: wp
    use errors, only: error_type
-   use places, only: place_type, source_type, fail_at
+   use places, only: place_type, source_type, fail_at, note_at
    use properties, only: name_length, section_type
    use mesh, only: element_truss, is_solid_kind, solid_plane, solid_topology, solid_reduced
    use mesh, only: plane_strain, plane_stress, axisymmetric, quad4
    use model, only: model_type
    use model_building, only: find_named
+   use source_reader, only: add_note
    use cards, only: deck_type, card_type, count_cards, get_word, get_name_parameter
    use cards, only: get_real_parameter, parameter_place, has_parameter
    use fields, only: fields_type, only_line, field_place, get_reals
@@ -50,7 +51,7 @@ contains
    !> The rest of a solid section, once its set is known and its elements have their type.
    subroutine read_solid(section, model, deck, card, error)
       type(section_type), intent(inout) :: section
-      type(model_type), intent(in) :: model
+      type(model_type), intent(inout) :: model
       type(deck_type), intent(in) :: deck
       type(card_type), intent(in) :: card
       type(error_type), allocatable, intent(out) :: error
@@ -74,7 +75,7 @@ contains
       end if
       call read_b_bar(section, kinds, card, model%source, error)
       if (allocated(error)) return
-      call read_thickness(section, kinds, deck, card, model%source, error)
+      call read_thickness(section, kinds, deck, card, model, error)
       if (allocated(error)) return
       call check_places(model, model%element_sets(section%set)%members, error)
    end subroutine read_solid
@@ -169,12 +170,12 @@ contains
    end function takes_b_bar
 
    !> The data line: the area of trusses, the thickness of plane elements (1 without a line).
-   subroutine read_thickness(section, kinds, deck, card, source, error)
+   subroutine read_thickness(section, kinds, deck, card, model, error)
       type(section_type), intent(inout) :: section
       integer, intent(in) :: kinds(:)
       type(deck_type), intent(in) :: deck
       type(card_type), intent(in) :: card
-      type(source_type), intent(in) :: source
+      type(model_type), intent(inout) :: model
       type(error_type), allocatable, intent(out) :: error
       type(fields_type) :: fields
       character(len=:), allocatable :: what
@@ -184,22 +185,21 @@ contains
       what = 'thickness'
       if (any(kinds == element_truss)) what = 'area'
       if (card%last < card%first) then
-         if (what == 'area') call fail_at(error, source, card%place, &
+         if (what == 'area') call fail_at(error, model%source, card%place, &
                '*SOLID SECTION of trusses has no data lines', cure='write the area of the truss')
          return
       end if
-      call only_line(fields, deck, card, 1, source, error)
+      call only_line(fields, deck, card, 1, model%source, error)
       if (allocated(error)) return
       if (any(solid_plane(kinds) == axisymmetric)) then
-         call fail_at(error, source, field_place(fields, 1), &
-               'the thickness has no meaning for axisymmetric elements', &
-               cure='remove the line: forces are those of the whole ring')
+         call add_note(model%notes, note_at(model%source, fields%place, 'the thickness of '// &
+               'axisymmetric elements has no effect: forces are those of the whole ring'))
          return
       end if
-      call get_reals(fields, 1, 1, what, values, source, error)
+      call get_reals(fields, 1, 1, what, values, model%source, error)
       if (allocated(error)) return
       section%area = values(1)
-      if (section%area <= 0.0_wp) call fail_at(error, source, field_place(fields, 1), &
+      if (section%area <= 0.0_wp) call fail_at(error, model%source, field_place(fields, 1), &
             'the '//what//' must be positive', cure='write a number above 0')
    end subroutine read_thickness
 
