@@ -54,7 +54,7 @@ def choose_scale(mesh, frame, is_mode):
 class Drawing:
     """The axes with the mesh in one frame."""
 
-    def __init__(self, mesh, frame, scale):
+    def __init__(self, mesh, frame, scale, with_bar, with_legend):
         self.mesh, self.frame = mesh, frame
         self.before = mesh.points[:, :2]
         self.place = mesh.place(frame, scale)
@@ -64,7 +64,8 @@ class Drawing:
         aspect = min(max((high - low)[1], 0.12 * size) / max((high - low)[0], 0.12 * size), 2.0)
         wide = 9.0 if aspect < 1 else 9.0 / aspect + 1.5
         self.flat = aspect < 0.6
-        tall = min(9.0 * aspect, 9.0) + (2.8 if self.flat else 1.2)
+        tall = min(9.0 * aspect, 9.0) + 1.6 + (0.6 if with_legend else 0.0)
+        tall += 1.2 if self.flat and with_bar else 0.0
         self.figure, self.axes = plt.subplots(figsize=(wide, tall), layout="constrained")
         self.axes.set_xlim(low[0] - 0.07 * size, high[0] + 0.07 * size)
         self.axes.set_ylim(low[1] - 0.07 * size, high[1] + 0.07 * size)
@@ -236,7 +237,7 @@ def main():
         scale = given.scale
         if scale is None:
             scale = choose_scale(mesh, frame, frame in modes)
-        drawing = Drawing(mesh, frame, scale)
+        drawing = Drawing(mesh, frame, scale, bool(given.field), given.groups or given.supports)
         if scale != 0:
             drawing.undeformed()
         title = f"time {mesh.times[frame]:.4g}"
