@@ -1,8 +1,9 @@
 """The deformed mesh: plot_mesh.py RESULT.h5 [--field S11] [--frame N] [--groups] [--supports]
 
-Draws a frame of /VTKHDF in the x-y plane, points + scale * U, the undeformed outline in grey; of a
-*FREQUENCY step a mode shape. Colours: a field (at the nodes if the file has it there, else one value
-an element), or the implicit and explicit elements. Without --scale small displacements are enlarged.
+Draws a frame of /VTKHDF in the x-y plane, points + scale * U, the undeformed outline in grey; of
+a *FREQUENCY step a mode shape. Colours: a field (at the nodes if the file has it there, else one
+value an element), or implicit and explicit elements. Without --scale small displacements are
+enlarged.
 """
 
 import numpy as np
@@ -190,7 +191,7 @@ class Drawing:
                             cmap=style["cmap"], vmin=clim[0], vmax=clim[1], zorder=2)
 
     def supports(self):
-        """A triangle for each freedom that is held or moved, outside the mesh, its tip at the node."""
+        """A triangle for each freedom that is held or moved, its tip at the node."""
         model = self.mesh.file.get("model", {})
         if "fixed_point" not in model:
             raise ScriptError(f"'{self.mesh.path}' has no /model/fixed_point: run carom again")
@@ -221,8 +222,9 @@ def main():
     parser.add_argument("--field", help="colours: U1, U, V, S11, MISES, PEEQ, ENER, ...")
     parser.add_argument("--cells", action="store_true", help="the field's mean in each element")
     parser.add_argument("--frame", type=int,
-                        help="1 is the first state (or mode), -1 the last (default: last state, mode 1)")
-    parser.add_argument("--scale", type=float, help="factor on the displacements (default: by itself)")
+                        help="1 is the first state or mode, -1 the last (default: last, mode 1)")
+    parser.add_argument("--scale", type=float, help="factor on the displacements"
+                        " (default: chosen to be seen)")
     parser.add_argument("--groups", action="store_true", help="colours: implicit and explicit")
     parser.add_argument("--supports", action="store_true", help="draw boundary conditions")
     given = parser.parse_args()
@@ -237,7 +239,8 @@ def main():
         scale = given.scale
         if scale is None:
             scale = choose_scale(mesh, frame, frame in modes)
-        drawing = Drawing(mesh, frame, scale, bool(given.field), given.groups or given.supports)
+        drawing = Drawing(mesh, frame, scale, bool(given.field),
+                          given.groups or given.supports)
         if scale != 0:
             drawing.undeformed()
         title = f"time {mesh.times[frame]:.4g}"
