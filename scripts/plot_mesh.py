@@ -1,8 +1,9 @@
 """The deformed mesh: plot_mesh.py RESULT.h5 [--field S11] [--frame N] [--groups] [--supports]
 
-Draws a frame of /VTKHDF in the x-y plane, points + scale * U, the undeformed outline in grey; of a
-*FREQUENCY step a mode shape. Colours: a field (at the nodes if the file has it there, else one value
-an element), or the implicit and explicit elements. Without --scale small displacements are enlarged.
+Draws a frame of /VTKHDF in the x-y plane, points + scale * U, the undeformed outline in grey; of
+a *FREQUENCY step a mode shape. Colours: a field (at the nodes if the file has it there, else one
+value an element), or implicit and explicit elements. Without --scale small displacements are
+enlarged.
 """
 
 import numpy as np
@@ -54,7 +55,7 @@ def choose_scale(mesh, frame, is_mode):
 class Drawing:
     """The axes with the mesh in one frame."""
 
-    def __init__(self, mesh, frame, scale):
+    def __init__(self, mesh, frame, scale, with_bar, with_legend):
         self.mesh, self.frame = mesh, frame
         self.before = mesh.points[:, :2]
         self.place = mesh.place(frame, scale)
@@ -64,7 +65,8 @@ class Drawing:
         aspect = min(max((high - low)[1], 0.12 * size) / max((high - low)[0], 0.12 * size), 2.0)
         wide = 9.0 if aspect < 1 else 9.0 / aspect + 1.5
         self.flat = aspect < 0.6
-        tall = min(9.0 * aspect, 9.0) + (2.8 if self.flat else 1.2)
+        tall = min(9.0 * aspect, 9.0) + 1.6 + (0.6 if with_legend else 0.0)
+        tall += 1.2 if self.flat and with_bar else 0.0
         self.figure, self.axes = plt.subplots(figsize=(wide, tall), layout="constrained")
         self.axes.set_xlim(low[0] - 0.07 * size, high[0] + 0.07 * size)
         self.axes.set_ylim(low[1] - 0.07 * size, high[1] + 0.07 * size)
@@ -189,7 +191,7 @@ class Drawing:
                             cmap=style["cmap"], vmin=clim[0], vmax=clim[1], zorder=2)
 
     def supports(self):
-        """A triangle for each freedom that is held or moved, outside the mesh, its tip at the node."""
+        """A triangle for each freedom that is held or moved, its tip at the node."""
         model = self.mesh.file.get("model", {})
         if "fixed_point" not in model:
             raise ScriptError(f"'{self.mesh.path}' has no /model/fixed_point: run carom again")
@@ -220,8 +222,9 @@ def main():
     parser.add_argument("--field", help="colours: U1, U, V, S11, MISES, PEEQ, ENER, ...")
     parser.add_argument("--cells", action="store_true", help="the field's mean in each element")
     parser.add_argument("--frame", type=int,
-                        help="1 is the first state (or mode), -1 the last (default: last state, mode 1)")
-    parser.add_argument("--scale", type=float, help="factor on the displacements (default: by itself)")
+                        help="1 is the first state or mode, -1 the last (default: last, mode 1)")
+    parser.add_argument("--scale", type=float, help="factor on the displacements"
+                        " (default: chosen to be seen)")
     parser.add_argument("--groups", action="store_true", help="colours: implicit and explicit")
     parser.add_argument("--supports", action="store_true", help="draw boundary conditions")
     given = parser.parse_args()
@@ -236,7 +239,8 @@ def main():
         scale = given.scale
         if scale is None:
             scale = choose_scale(mesh, frame, frame in modes)
-        drawing = Drawing(mesh, frame, scale)
+        drawing = Drawing(mesh, frame, scale, bool(given.field),
+                          given.groups or given.supports)
         if scale != 0:
             drawing.undeformed()
         title = f"time {mesh.times[frame]:.4g}"

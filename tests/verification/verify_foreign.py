@@ -1,4 +1,4 @@
-"""Decks of others: CalculiX's own test decks, decks that CalculiX runs too, a mesh as gmsh writes it.
+"""Decks of others: CalculiX's test decks, decks that CalculiX runs too, a mesh as gmsh writes it.
 
 Needs the Debian packages calculix-ccx and calculix-ccx-test; nothing of them is kept here.
 """
@@ -17,14 +17,15 @@ AGREE = 1e-3                # of the largest displacement, or of each frequency
 FEWEST = 4                  # decks of calculix-ccx-test that run today
 # Decks whose reference differs for a known reason, with what it may differ by
 KNOWN = {'axial': (5e-3, 'CalculiX takes the centrifugal load of CAX8R at 2 x 2 points, '
-                         'carom at 3 x 3, which on the two elements is closer to the exact solution')}
+                         'carom at 3 x 3, which on two elements is nearer to the exact solution')}
 PLANE = re.compile(rb'TYPE *= *(CPE|CPS|CAX|T3D2|T2D2|SPRING|MASS|DASHPOT|GAPUNI)', re.I)
 
 
 def need(package, found):
     """Ends the test where a package is missing: nothing is left out silently."""
     if not found:
-        sys.exit(f'FAILED: the Debian package {package} is not installed: apt-get install {package}')
+        sys.exit(f'FAILED: the Debian package {package} is not installed: '
+                 f'apt-get install {package}')
 
 
 def read(path):
@@ -256,6 +257,12 @@ def check_gmsh(checks):
     kinds = ours['VTKHDF/Types'].tolist()
     checks.true([kinds.count(k) for k in (21, 22, 23)] == [4, 4, 6],
                 'gmsh plate: quadratic lines, triangles and quadrilaterals in the grid')
+    checks.true(ours['model/element_scheme'].tolist() == [0] * 4 + [1] * 10,
+                'gmsh plate: lines have no scheme, the solids are implicit')
+    fixed = sorted(zip(ours['model/node_id'][ours['model/fixed_point']].tolist(),
+                       ours['model/fixed_dof'].tolist()))
+    checks.true(fixed == sorted((number[0, j], dof) for j in range(5) for dof in (1, 2)),
+                'gmsh plate: the supports are in the result')
     x = ours['VTKHDF/Points'][ours['VTKHDF/Connectivity'][:12].reshape(4, 3)]
     checks.close(x[:, 2], x[:, :2].mean(axis=1), 1e-12, 'gmsh plate: the middle node of lines last')
 
