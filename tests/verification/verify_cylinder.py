@@ -127,6 +127,22 @@ def check_plastic(checks, kind, n, section, c, name=None):
     print('        iterations', counts.astype(int))
 
 
+def check_limit(checks):
+    """A pressure beyond what the cylinder bears: increments are cut back until the run stops, at the
+    limit 2 k ln(b/a)."""
+    limit = 2 * YIELD / np.sqrt(3) * np.log(B / A)
+    pressure = 220.0
+    text = deck('CAX4', 40, 0.4999, 'Beyond the limit', ', BBAR=YES', f'*PLASTIC\n{YIELD!r}, 0\n',
+                pressure, 'STATIC', '0.1, 1, 1e-5, 0.1')[1]
+    run = run_deck(text, expect_status=4)
+    table = np.loadtxt(run.path.with_suffix('.sta'), ndmin=2)
+    reached = table[-1, 2] * pressure
+    checks.at_most(abs(reached / limit - 1), 5e-3,
+                   f'limit pressure {reached:.6g} against {limit:.6g}, {len(table)} increments')
+    checks.at_most(table[:, 4].min(), 1e-3, 'limit pressure: smallest increment')
+    checks.true('cut back' in run.text, 'limit pressure: the message says that it was cut back')
+
+
 checks = Checks()
 check_elastic(checks, 'CAX8', 12, 0.3, 2e-3, 'elastic_cax8.inp')
 check_elastic(checks, 'CPE8', 12, 0.3, 2e-3, 'elastic_cpe8.inp')
@@ -136,4 +152,5 @@ check_elastic(checks, 'CAX4', 16, 0.4999, 1e-2, section=', BBAR=YES')
 check_plastic(checks, 'CAX4', 80, ', BBAR=YES', 1.5, 'plastic_cax4.inp')
 check_plastic(checks, 'CPE4', 40, ', BBAR=YES', 1.5)
 check_plastic(checks, 'CAX8R', 40, '', 1.5)
+check_limit(checks)
 checks.finish()

@@ -193,20 +193,19 @@ def check_static(checks):
     prints = '*NODE FILE\nU\n*EL FILE\nS, PEEQ\n*ENERGY PRINT\n*NODE PRINT\nRF\n'
     fixed = run_deck(model + step('STATIC, DIRECT', '0.0025, 1', pulled, prints))
     right = last_frame(fixed, 'PEEQ', 'CellData')
-    force = {}
     for first in (0.01, 1.0):
         run = run_deck(model + step('STATIC', f'{first!r}, 1', pulled, prints))
         table = status(run)
         h, found = table[:, 4], last_frame(run, 'PEEQ', 'CellData')
-        checks.at_most(np.max(np.abs(found - right)) / right.max(), 0.03,
+        checks.at_most(np.max(np.abs(found - right)) / right.max(), 0.05,
                        f'bar, first increment {first:g}: plastic strain after {len(h)} increments')
         checks.at_most(np.max(np.abs(run['energy/balance_error']))
                        / run['energy/external_work'][-1], 1e-6,
                        f'bar, first increment {first:g}: balance error')
-        print('        increments', ' '.join(f'{v:.3g}' for v in h), 'iterations',
-              table[:, 5].astype(int))
+        checks.at_most(table[:, 5].max(), 8, f'bar, first increment {first:g}: iterations')
         if first < 1:
             checks.at_least(h.max() / h[0], 5, 'bar: growth')
+            checks.at_most(len(h), 40, 'bar: increments')
         checks.close(np.sum(h), 1.0, 1e-5, f'bar, first increment {first:g}: increments add up')
 
 
