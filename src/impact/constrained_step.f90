@@ -6,8 +6,8 @@ module constrained_step
    use text, only: to_text
    use dof_map, only: reduce
    use complementarity, only: solve_complementarity, solve_equality
-   use motion_state, only: newmark_type, correct
-   use equation_of_motion, only: predict_motion, fixed_force, residual, &
+   use motion_state, only: newmark_type, state_type, correct
+   use equation_of_motion, only: system_type, predict_motion, fixed_force, residual, &
          solve_motion, prepare_motion
    use constraint_rows, only: row_gaps, row_accelerations, row_forces
    use impact_scene, only: scene_type, contact_motion_type
@@ -164,8 +164,14 @@ contains
       reference = 0.0_wp
       left = huge(left)
       do iteration = 1, scene%system%max_iterations
-         psi = residual(scene%system, fixed, from%motion%history, to%motion)
-         call prepare_motion(scene%system, dt, 0.25_wp, to%motion%d, from%motion%history, error)
+         if (iteration == 1 .and. .not. scene%system%structure%is_linear) then
+            psi = first_residual(scene%system, fixed, from%motion, to%motion%d)
+            call prepare_motion(scene%system, dt, 0.25_wp, from%motion%d, from%motion%history, &
+                  error)
+         else
+            psi = residual(scene%system, fixed, from%motion%history, to%motion)
+            call prepare_motion(scene%system, dt, 0.25_wp, to%motion%d, from%motion%history, error)
+         end if
          if (allocated(error)) return
          delta = solve_motion(scene%system, psi)
          call add_static_contact(scene, to, delta, error)
@@ -178,6 +184,27 @@ contains
       end do
       call not_converged(scene, to%motion%t, error)
    end subroutine solve_statically
+
+   !> Residual of a static step's first iteration, where prescribed freedoms have gone ahead of all
+   !> others: their neighbours would yield though nothing does in the end, and Newton's method not
+   !> recover. So their jump is taken as linear, by a difference backwards, where what yields is
+   !> elastic as the stiffness at the start is.
+   function first_residual(system, fixed, from, ahead) result(psi)
+      type(system_type), intent(in) :: system
+      real(wp), intent(in) :: fixed(:)
+      type(state_type), intent(in) :: from
+      real(wp), intent(in) :: ahead(:)           !! displacements, prescribed ones at their new place
+      real(wp) :: psi(size(fixed))
+      real(wp), parameter :: part = 1.0e-6_wp
+      type(state_type) :: start, behind
+
+      start = from
+      psi = residual(system, fixed, from%history, start)
+      if (all(abs(ahead - from%d) <= 0.0_wp)) return
+      behind = from
+      behind%d = from%d - part*(ahead - from%d)
+      psi = psi - (residual(system, fixed, from%history, behind) - psi)/part
+   end function first_residual
 
    subroutine add_static_contact(scene, to, delta, error)
       type(scene_type), intent(inout) :: scene

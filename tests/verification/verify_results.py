@@ -159,7 +159,13 @@ def check_tables(checks, file, rows):
     checks.true(set(history) == expected, f'history: {len(expected)} columns '
                 f'{sorted(set(history) ^ expected)}')
     energy = columns(file['energy'])
-    checks.true(set(energy) == set(ENERGIES), 'energy: its columns')
+    groups = {name for name in energy if name.startswith('group_')}
+    checks.true(set(energy) - groups == set(ENERGIES), 'energy: its columns')
+    for kind in ('kinetic', 'strain'):
+        parts = sum(data[:] for name, data in energy.items()
+                    if name in groups and name.endswith(kind))
+        checks.close(parts, energy[kind][:], 1e-12 * np.max(energy['total'][:]),
+                     f'energy: the groups make up the {kind} energy')
     checks.true({len(data) for data in energy.values()} == {rows},
                 f'energy: {rows} rows everywhere')
     events = columns(file['events'])

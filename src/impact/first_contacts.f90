@@ -1,0 +1,75 @@
+!> Contacts of the first state of a step: what touches, what is hit at once, what is pressed.
+module first_contacts
+   use kinds, only: wp
+   use errors, only: error_type
+   use complementarity, only: solve_complementarity
+   use constraint_rows, only: row_gaps, row_rates, row_accelerations, gap_size, rate_size
+   use impact_scene, only: scene_type, contact_motion_type, gap_tolerance, rate_tolerance
+   use impact_jump, only: impact_type, compliance_type, apply_impact, restart_acceleration, &
+         mass_compliance
+   implicit none
+   private
+
+   public :: find_first_contacts
+
+contains
+
+   !> The first state: rows that touch and close are hit at once; rows that touch at rest and are
+   !> pressed are captured; then the acceleration of equilibrium.
+   subroutine find_first_contacts(scene, motion, dt, beta, error)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(inout) :: motion
+      real(wp), intent(in) :: dt                 !! step to come
+      real(wp), intent(in) :: beta               !! of the impact step, for the record
+      type(error_type), allocatable, intent(out) :: error
+      type(impact_type) :: impact
+      real(wp) :: gap_limit
+      integer :: i
+
+      gap_limit = gap_tolerance*gap_size(scene%rows, motion%motion, dt)
+      impact%dt = dt
+      impact%beta = beta
+      impact%rate_limit = rate_tolerance*rate_size(scene%rows, motion%motion)
+      allocate (impact%forced(scene%rows%n), impact%near(scene%rows%n))
+      impact%forced = .false.
+      call capture_pressed(scene, motion, gap_limit, impact%rate_limit, error)
+      if (allocated(error)) return
+      do i = 1, scene%settings%max_events
+         impact%new = .not. motion%touching .and. row_gaps(scene%rows, motion%motion) <= gap_limit &
+               .and. row_rates(scene%rows, motion%motion) < -impact%rate_limit
+         if (.not. any(impact%new)) exit
+         impact%near = .not. motion%touching .and. .not. impact%new .and. &
+               .not. scene%rows%restitution > 0.0_wp .and. &
+               row_gaps(scene%rows, motion%motion) <= gap_limit
+         call apply_impact(scene, motion, impact, error)
+         if (allocated(error)) return
+      end do
+      call restart_acceleration(scene, motion, error)
+      motion%fresh = .true.
+   end subroutine find_first_contacts
+
+   !> Rows at rest at the wall: 0 <= lambda, W lambda + G a_free >= 0; those with a force touch.
+   subroutine capture_pressed(scene, motion, gap_limit, rate_limit, error)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(inout) :: motion
+      real(wp), intent(in) :: gap_limit, rate_limit
+      type(error_type), allocatable, intent(out) :: error
+      type(compliance_type) :: compliance
+      real(wp) :: a_rows(scene%rows%n)
+      real(wp), allocatable :: lambda(:)
+      logical :: resting(scene%rows%n), solved
+
+      resting = row_gaps(scene%rows, motion%motion) <= gap_limit .and. &
+            abs(row_rates(scene%rows, motion%motion)) <= rate_limit
+      motion%touching = .false.
+      call restart_acceleration(scene, motion, error)
+      if (allocated(error) .or. .not. any(resting)) return
+      call mass_compliance(scene, resting, compliance, error)
+      if (allocated(error)) return
+      allocate (lambda(size(compliance%rows)))
+      a_rows = row_accelerations(scene%rows, motion%motion%a)
+      call solve_complementarity(compliance%w, a_rows(compliance%rows), lambda, solved)
+      if (solved) motion%touching(compliance%rows) = lambda > 0.0_wp
+   end subroutine capture_pressed
+
+end module first_contacts
