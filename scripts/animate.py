@@ -1,8 +1,9 @@
 """A moving picture of a run: animate.py RESULT.h5 [--scale 1] [--every 1] [--fps 25] [-o x.mp4]
 
-Draws the frames of /VTKHDF in the x-y plane, points + scale * U, solids filled. Rigid planes appear
-if the file has them, gap elements as thin lines, supports as grey squares, and where an impact has just
-happened the node is red. Writes a GIF, or with -o NAME.mp4 an MP4 film (needs ffmpeg).
+Draws the frames of /VTKHDF in the x-y plane, points + scale * U, solids filled. Rigid planes
+appear if the file has them, gap elements as thin lines, supports as grey squares, and where an
+impact has just happened the node is red. Writes a GIF, or with -o NAME.mp4 an MP4 film (needs
+ffmpeg).
 """
 
 import os

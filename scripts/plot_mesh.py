@@ -61,7 +61,9 @@ class Drawing:
         self.place = mesh.place(frame, scale)
         low = np.minimum(self.before.min(axis=0), self.place.min(axis=0))
         high = np.maximum(self.before.max(axis=0), self.place.max(axis=0))
-        size = max((high - low).max(), 1e-12)
+        size = (high - low).max()
+        if size <= 1e-9 * np.abs(low).max() or size == 0.0:  # a single point
+            size = max(np.abs(low).max(), 1.0)
         aspect = min(max((high - low)[1], 0.12 * size) / max((high - low)[0], 0.12 * size), 2.0)
         wide = 9.0 if aspect < 1 else 9.0 / aspect + 1.5
         self.flat = aspect < 0.6

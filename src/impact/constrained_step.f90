@@ -10,7 +10,7 @@ module constrained_step
    use equation_of_motion, only: system_type, predict_motion, fixed_force, residual, &
          solve_motion, prepare_motion
    use constraint_rows, only: row_gaps, row_accelerations, row_forces
-   use impact_scene, only: scene_type, contact_motion_type
+   use impact_scene, only: scene_type, contact_motion_type, record_residual
    use row_compliance, only: find_compliance
    use overlap_force, only: add_overlap_force
    implicit none
@@ -38,6 +38,7 @@ contains
       type(newmark_type) :: newmark
       real(wp), dimension(size(from%motion%d)) :: fixed, psi, delta
       real(wp) :: reference, left
+      logical :: converged
       integer :: iteration
 
       newmark = scene%system%newmark
@@ -58,9 +59,10 @@ contains
          if (allocated(error)) return
          call correct(newmark, dt, delta, to%motion)
          if (scene%system%structure%is_linear) return
-         scene%n_iterations = scene%n_iterations + 1
          reference = max(reference, norm2(psi), norm2(fixed))
-         if (has_converged(scene, fixed, from, to, delta, reference, left)) return
+         converged = has_converged(scene, fixed, from, to, delta, reference, left)
+         call record_residual(scene, iteration, left/max(reference, tiny(1.0_wp)))
+         if (converged) return
       end do
       call not_converged(scene, to%motion%t, error)
    end subroutine advance_smoothly
@@ -154,6 +156,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       real(wp), dimension(size(from%motion%d)) :: fixed, psi, delta
       real(wp) :: reference, left
+      logical :: converged
       integer :: iteration
 
       to = from
@@ -178,9 +181,10 @@ contains
          if (allocated(error)) return
          to%motion%d = to%motion%d + delta
          if (scene%system%structure%is_linear) return
-         scene%n_iterations = scene%n_iterations + 1
          reference = max(reference, norm2(psi), norm2(fixed))
-         if (has_converged(scene, fixed, from, to, delta, reference, left)) return
+         converged = has_converged(scene, fixed, from, to, delta, reference, left)
+         call record_residual(scene, iteration, left/max(reference, tiny(1.0_wp)))
+         if (converged) return
       end do
       call not_converged(scene, to%motion%t, error)
    end subroutine solve_statically
@@ -193,7 +197,7 @@ contains
       type(system_type), intent(in) :: system
       real(wp), intent(in) :: fixed(:)
       type(state_type), intent(in) :: from
-      real(wp), intent(in) :: ahead(:)           !! displacements, prescribed ones at their new place
+      real(wp), intent(in) :: ahead(:)           !! displacements, the prescribed ones moved on
       real(wp) :: psi(size(fixed))
       real(wp), parameter :: part = 1.0e-6_wp
       type(state_type) :: start, behind

@@ -12,13 +12,16 @@ module impact_scene
 
    public :: scene_type, contact_motion_type, event_type, impact_settings_type
    public :: event_impact, event_capture, event_release, event_contact, event_limit
-   public :: new_contact_motion, record_event, accept_span, capture_speeds
+   public :: new_contact_motion, record_event, record_residual, accept_span, capture_speeds
 
    integer, parameter :: event_impact = 1     !! velocity jump
    integer, parameter :: event_capture = 2    !! a row begins sustained contact
    integer, parameter :: event_release = 3    !! a row ends sustained contact
    integer, parameter :: event_contact = 4    !! first overlap, fictitious force
    integer, parameter :: event_limit = 5      !! the limit of events in a step was reached
+
+   !> Iterations whose residuals are remembered.
+   integer, parameter :: max_residuals = 50
 
    !> Relative tolerances, each on the size of the numbers its quantity is a difference of.
    real(wp), parameter, public :: gap_tolerance = 1.0e-12_wp
@@ -69,6 +72,8 @@ module impact_scene
       type(event_type), allocatable :: events(:) !! grown by doubling
       integer :: n_events = 0                    !! since the last time they were fetched
       real(wp), allocatable :: impulse(:)        !! (n_rows) of the increment at hand
+      integer :: n_residuals = 0                 !! Newton iterations of the last solution
+      real(wp) :: residuals(max_residuals) = 0.0_wp   !! after each, of the largest force
       integer(int64) :: n_iterations = 0         !! of Newton's method and of the fictitious force
    end type scene_type
 
@@ -89,6 +94,17 @@ contains
       self%touching = [(.false., i=1, n_rows)]
       self%leaving = self%touching
    end subroutine new_contact_motion
+
+   !> Remembers the residual after a Newton iteration.
+   pure subroutine record_residual(scene, iteration, residual)
+      type(scene_type), intent(inout) :: scene
+      integer, intent(in) :: iteration
+      real(wp), intent(in) :: residual           !! relative
+
+      scene%n_iterations = scene%n_iterations + 1
+      scene%n_residuals = min(iteration, max_residuals)
+      scene%residuals(scene%n_residuals) = residual
+   end subroutine record_residual
 
    !> Notes an event.
    pure subroutine record_event(scene, event)

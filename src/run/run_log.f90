@@ -6,7 +6,7 @@ module run_log
    implicit none
    private
 
-   public :: log_type, open_log, close_log, say, write_status
+   public :: log_type, open_log, close_log, say, note, write_status
 
    !> Where lines go. Without files (a mere check), to the terminal alone.
    type :: log_type
@@ -53,6 +53,14 @@ contains
       if (self%log_unit /= -1) write (self%log_unit, '(a)') line
       if (self%terminal) write (output_unit, '(a)') line
    end subroutine say
+
+   !> One line for the log alone.
+   subroutine note(self, line)
+      type(log_type), intent(in) :: self
+      character(len=*), intent(in) :: line
+
+      if (self%log_unit /= -1) write (self%log_unit, '(a)') line
+   end subroutine note
 
    !> One line of the status file an increment.
    subroutine write_status(self, counts, times)

@@ -8,11 +8,12 @@ module simulation
    use motion_state, only: state_type
    use energy_ledger, only: ledger_type, close_increment
    use effective_matrix, only: mark_implicit
+   use impact_scene, only: scene_type
    use deck_reader, only: read_deck
    use result_file, only: result_file_type, open_results, record_increment, close_results, &
          write_system, flush_results
    use command_line, only: command_type, version_text
-   use run_log, only: log_type, open_log, close_log, say, write_status
+   use run_log, only: log_type, open_log, close_log, say, note, write_status
    use progress, only: progress_type, start_progress, show_progress, end_progress
    use scene_setup, only: simulation_type, build_scene, begin_step, initial_motion, &
          count_increments, last_increment, count_events
@@ -290,6 +291,9 @@ contains
          if (allocated(error)) return
          call write_status(output%log, [counts, int(scene%n_iterations - output%iterations), &
                n_events], [times(1), motion%motion%t, times(2)])
+         if (.not. scene%system%structure%is_linear) then
+            call note_residuals(scene, counts(2), output%log)
+         end if
          output%iterations = scene%n_iterations
          call show_progress(output%progress, motion%motion%t/output%end_time, motion%motion%t)
          call flush_now_and_then(output, error)
@@ -297,6 +301,21 @@ contains
          call check_balance(scene%ledger, step, motion%motion%t, error)
       end associate
    end subroutine finish_increment
+
+   !> How Newton's method went in an increment (its last solution, where it has several).
+   subroutine note_residuals(scene, increment, log)
+      type(scene_type), intent(in) :: scene
+      integer, intent(in) :: increment
+      type(log_type), intent(in) :: log
+      character(len=:), allocatable :: line
+      integer :: i
+
+      line = '  increment '//to_text(increment)//': residuals'
+      do i = 1, scene%n_residuals
+         line = line//' '//to_text(scene%residuals(i), 2)
+      end do
+      call note(log, line)
+   end subroutine note_residuals
 
    !> A motion that is not finite stops the run; what was good is in the results.
    subroutine check_finite(motion, dt, error)

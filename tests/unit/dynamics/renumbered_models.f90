@@ -87,7 +87,8 @@ contains
       subroutine brace(a, b)
          integer, intent(in) :: a, b
 
-         call add_truss(model, [a, b], random_real(1.0_wp, 2.0_wp), [10.0_wp, 1.0_wp, 0.0_wp, 0.0_wp])
+         call add_truss(model, [a, b], random_real(1.0_wp, 2.0_wp), &
+               [10.0_wp, 1.0_wp, 0.0_wp, 0.0_wp])
       end subroutine brace
 
    end function shuffled_grid
