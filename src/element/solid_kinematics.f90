@@ -41,7 +41,11 @@ contains
       allocate (self%dilatation(2, n, merge(m, 0, shape%b_bar)))
       allocate (self%hourglass(n, merge(m, 0, shape%topology == quad4 .and. shape%reduced)))
       do e = 1, m
-         call place_points(self, shape, rule, x(:, :, e), e)
+         if (shape%plane == axisymmetric .and. size(self%hourglass, 2) > 0) then
+            call place_mean_point(self, shape, x(:, :, e), e)
+         else
+            call place_points(self, shape, rule, x(:, :, e), e)
+         end if
          if (size(self%dilatation, 3) > 0) call average_dilatation(self, e)
          if (size(self%hourglass, 2) > 0) call find_hourglass(self, x(:, :, e), e)
       end do
@@ -66,6 +70,33 @@ contains
          self%volume(p, e) = rule%weight(p)*det_j*depth_at(shape, r)
       end do
    end subroutine place_points
+
+   !> The one point of an axisymmetric quadrilateral: gradients averaged over the volume. Those at the
+   !> centre would not keep a distorted mesh in balance under constant stresses, since the hoop's
+   !> share is not what the point sees.
+   pure subroutine place_mean_point(self, shape, x, e)
+      type(kinematics_type), intent(inout) :: self
+      type(solid_shape_type), intent(in) :: shape
+      real(wp), intent(in) :: x(:, :)
+      integer, intent(in) :: e
+      type(rule_type) :: rule
+      real(wp) :: n(size(x, 2)), gradient(2, size(x, 2)), det_j, r, share
+      integer :: p
+
+      rule = stiffness_rule(shape%topology, .false.)
+      self%gradient(:, :, 1, e) = 0.0_wp
+      self%volume(1, e) = 0.0_wp
+      do p = 1, rule%n
+         n = shape_functions(shape%topology, rule%point(:, p))
+         r = dot_product(n, x(1, :))
+         call map_derivatives(shape%topology, x, rule%point(:, p), gradient, det_j)
+         share = rule%weight(p)*det_j*depth_at(shape, r)
+         self%volume(1, e) = self%volume(1, e) + share
+         self%gradient(1:2, :, 1, e) = self%gradient(1:2, :, 1, e) + share*gradient
+         self%gradient(3, :, 1, e) = self%gradient(3, :, 1, e) + share*n/r
+      end do
+      self%gradient(:, :, 1, e) = self%gradient(:, :, 1, e)/self%volume(1, e)
+   end subroutine place_mean_point
 
    !> Volumetric strain averaged over the element, per displacement (Hughes, The Finite Element
    !> Method, section 4.5.2: B-bar with mean dilatation).
