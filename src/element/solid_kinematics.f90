@@ -71,7 +71,8 @@ contains
       end do
    end subroutine place_points
 
-   !> The one point of an axisymmetric quadrilateral: gradients averaged over the volume. Those at the
+   !> The one point of an axisymmetric quadrilateral: gradients averaged over the volume. Those at
+   !> the
    !> centre would not keep a distorted mesh in balance under constant stresses, since the hoop's
    !> share is not what the point sees.
    pure subroutine place_mean_point(self, shape, x, e)
