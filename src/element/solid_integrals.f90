@@ -1,10 +1,11 @@
-!> Mass and loads of one plane or axisymmetric solid, always with the full rule of the mass.
+!> Mass and loads of one plane or axisymmetric solid, with the full rule of the mass; the rotation
+!> of CAX8R alone with that of its stiffness.
 module solid_integrals
    use kinds, only: wp
    use elastic, only: axisymmetric
-   use quadrature, only: rule_type, mass_rule, line_rule
+   use quadrature, only: rule_type, mass_rule, stiffness_rule, line_rule
    use solid_geometry, only: solid_shape_type, map_derivatives, depth_at
-   use topology, only: quad4, count_nodes, count_corners, edge_nodes, shape_functions, &
+   use topology, only: quad4, quad8, count_nodes, count_corners, edge_nodes, shape_functions, &
          line_functions, line_derivatives
    implicit none
    private
@@ -18,19 +19,27 @@ contains
       type(solid_shape_type), intent(in) :: shape
       real(wp), intent(in) :: x(:, :)           !! (2, n_nodes)
       real(wp) :: matrix(size(x, 2), size(x, 2))
-      type(rule_type) :: rule
+
+      matrix = weigh(shape, x, mass_rule(shape%topology))
+   end function mass_matrix
+
+   !> Integral of N Nt over the volume by a rule.
+   pure function weigh(shape, x, rule) result(matrix)
+      type(solid_shape_type), intent(in) :: shape
+      real(wp), intent(in) :: x(:, :)           !! (2, n_nodes)
+      type(rule_type), intent(in) :: rule
+      real(wp) :: matrix(size(x, 2), size(x, 2))
       real(wp) :: n(size(x, 2)), volume
       integer :: p, i
 
       matrix = 0.0_wp
-      rule = mass_rule(shape%topology)
       do p = 1, rule%n
          call sample(shape, x, rule, p, n, volume)
          do i = 1, size(n)
             matrix(:, i) = matrix(:, i) + volume*n(i)*n
          end do
       end do
-   end function mass_matrix
+   end function weigh
 
    !> The volume shared among the nodes, all shares positive: row sums of the mass matrix, or in
    !> proportion to its diagonal where there are middle nodes (Hinton, Rock and Zienkiewicz).
@@ -78,7 +87,12 @@ contains
             distance(:, i) = distance(:, i) - dot_product(distance(:, i), axis)*axis
          end if
       end do
-      matrix = mass_matrix(shape, x)
+      ! CAX8R: the rule of the stiffness, as CalculiX does
+      if (shape%plane == axisymmetric .and. shape%topology == quad8 .and. shape%reduced) then
+         matrix = weigh(shape, x, stiffness_rule(quad8, .true.))
+      else
+         matrix = mass_matrix(shape, x)
+      end if
       force = matmul(distance(1:2, :), matrix)
    end function centrifugal_force
 
