@@ -4,7 +4,7 @@ module amplitude_reader
    use errors, only: error_type
    use places, only: fail_at
    use properties, only: name_length
-   use histories, only: amplitude_type, time_step, time_total
+   use histories, only: time_step, time_total
    use model, only: model_type
    use model_building, only: find_named
    use cards, only: deck_type, card_type, count_cards, get_word, get_name_parameter, parameter_place

@@ -2,7 +2,7 @@
 module condition_reader
    use kinds, only: wp
    use errors, only: error_type
-   use places, only: place_type, fail_at, line_text
+   use places, only: fail_at, line_text
    use histories, only: boundary_type, nodal_value_type
    use histories, only: motion_displacement, motion_velocity, motion_acceleration
    use model, only: model_type

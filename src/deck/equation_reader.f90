@@ -2,7 +2,7 @@
 module equation_reader
    use kinds, only: wp
    use errors, only: error_type
-   use places, only: place_type, fail_at, line_text
+   use places, only: fail_at, line_text
    use histories, only: equation_type, boundary_type
    use model, only: model_type
    use integer_map, only: integer_map_type

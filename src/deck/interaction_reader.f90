@@ -2,9 +2,9 @@
 module interaction_reader
    use kinds, only: wp
    use errors, only: error_type
-   use places, only: source_type, place_type, fail_at, note_at
+   use places, only: source_type, fail_at, note_at
    use surfaces, only: interaction_type, method_transformation, method_fictitious_force
-   use surfaces, only: beta_automatic, beta_given
+   use surfaces, only: beta_given
    use properties, only: section_gap
    use model, only: model_type
    use model_building, only: find_named

@@ -16,7 +16,7 @@ module load_reader
    use numbers, only: unit_vector
    use set_reader, only: find_element_set
    use element_types, only: kind_name
-   use words, only: word_length, squeezed, find_word, advice
+   use words, only: word_length, find_word, advice
    use text, only: to_text
    implicit none
    private

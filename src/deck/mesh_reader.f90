@@ -5,7 +5,7 @@ module mesh_reader
    use places, only: place_type, source_type, fail_at, line_text
    use model, only: model_type
    use cards, only: deck_type, card_type, get_word
-   use fields, only: fields_type, split_line, check_count, field_place, is_given
+   use fields, only: fields_type, split_line, check_count, field_place
    use fields, only: get_integer, get_reals
    use element_types, only: type_names, kinds_of_types, nodes_of_types, most_nodes
    use text, only: to_text

@@ -6,8 +6,8 @@ module set_reader
    use integer_map, only: integer_map_type
    use mesh, only: set_type
    use model, only: model_type
-   use model_building, only: find_named, append, fit, sort_unique
-   use cards, only: deck_type, card_type, get_name_parameter, has_parameter, parameter_place
+   use model_building, only: find_named, append, sort_unique
+   use cards, only: deck_type, card_type, get_name_parameter, has_parameter
    use fields, only: fields_type, split_line, check_count, field_place, is_given, is_integer
    use fields, only: get_integer, get_name
    use words, only: advice

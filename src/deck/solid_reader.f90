@@ -2,7 +2,7 @@
 module solid_reader
    use kinds, only: wp
    use errors, only: error_type
-   use places, only: place_type, source_type, fail_at, note_at
+   use places, only: source_type, fail_at, note_at
    use properties, only: name_length, section_type
    use mesh, only: element_truss, is_solid_kind, solid_plane, solid_topology, solid_reduced
    use mesh, only: plane_strain, plane_stress, axisymmetric, quad4
@@ -10,7 +10,7 @@ module solid_reader
    use model_building, only: find_named
    use source_reader, only: add_note
    use cards, only: deck_type, card_type, count_cards, get_word, get_name_parameter
-   use cards, only: get_real_parameter, parameter_place, has_parameter
+   use cards, only: get_real_parameter, parameter_place
    use fields, only: fields_type, only_line, field_place, get_reals
    use element_types, only: kind_name
    use words, only: word_length, advice

@@ -2,7 +2,7 @@
 module spring_reader
    use kinds, only: wp
    use errors, only: error_type
-   use places, only: place_type, source_type, fail_at
+   use places, only: source_type, fail_at
    use properties, only: section_type, section_spring
    use mesh, only: element_spring1, element_springa, element_dashpot1, element_dashpota
    use cards, only: deck_type, card_type, has_parameter, parameter_place

@@ -2,16 +2,14 @@
 module step_reader
    use kinds, only: wp
    use errors, only: error_type
-   use places, only: place_type, source_type, fail_at
+   use places, only: source_type, fail_at
    use steps, only: step_type, procedure_static, procedure_dynamic, procedure_frequency
-   use properties, only: name_length
    use mesh, only: element_mass, element_gap, element_line, scheme_explicit, mass_consistent
    use model, only: model_type
    use cards, only: deck_type, card_type, get_word, get_name_parameter, get_integer_parameter
    use cards, only: get_real_parameter, parameter_place, has_parameter
    use fields, only: fields_type, only_line, field_place, get_reals, get_integer
    use condition_reader, only: read_boundaries, read_initial_conditions, read_loads
-   use amplitude_reader, only: find_amplitude
    use request_reader, only: read_requests
    use load_reader, only: read_distributed, read_base_motions
    use words, only: word_length, find_word

@@ -2,12 +2,12 @@
 module surface_reader
    use kinds, only: wp
    use errors, only: error_type
-   use places, only: place_type, fail_at
+   use places, only: fail_at
    use properties, only: name_length
    use model, only: model_type
    use model_building, only: find_named, append, fit, sort_unique
    use cards, only: deck_type, card_type, count_cards, get_word, get_name_parameter
-   use cards, only: parameter_place, get_integer_parameter
+   use cards, only: parameter_place
    use fields, only: fields_type, split_line, check_count, field_place, get_reals, get_name
    use amplitude_reader, only: find_amplitude
    use numbers, only: unit_vector

@@ -6,7 +6,7 @@ module symbols
    use properties, only: name_length
    use words, only: squeezed, advice
    use numbers, only: parse_real
-   use cards, only: deck_type, card_type, symbol_type
+   use cards, only: deck_type, symbol_type
    implicit none
    private
 

@@ -10,7 +10,7 @@ module constraint_rows
    use model, only: model_type
    use surfaces, only: interaction_type
    use structure, only: structure_type
-   use contact_pairs, only: contact_row_type, contact_pair_list_type
+   use contact_pairs, only: contact_pair_list_type
    use motion_state, only: state_type
    implicit none
    private

@@ -7,9 +7,8 @@ module impact_jump
    use equation_of_motion, only: prepare_mass, solve_mass, force_balance
    use structure, only: inertia_force
    use energy_ledger, only: record_impact
-   use constraint_rows, only: row_gaps, row_rates, row_accelerations, row_vector, row_forces, &
-         rate_size, gap_size, &
-         wall_rates
+   use constraint_rows, only: row_gaps, row_rates, row_accelerations, row_vector, rate_size, &
+         gap_size, wall_rates
    use impact_scene, only: scene_type, contact_motion_type, event_type, record_event, &
          capture_speeds, gap_tolerance, event_impact, event_capture, event_limit
    implicit none

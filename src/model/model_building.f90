@@ -1,7 +1,7 @@
 !> Putting a model together: appending in amortised constant time, and finding by name.
 module model_building
    use mesh, only: set_type
-   use properties, only: material_type, name_length
+   use properties, only: material_type
    use surfaces, only: surface_type, rigid_surface_type, interaction_type
    use histories, only: amplitude_type, boundary_type, nodal_value_type
    implicit none

@@ -4,7 +4,7 @@ module energy_recorder
    use errors, only: error_type
    use text, only: to_text
    use mesh, only: scheme_implicit
-   use energy_ledger, only: ledger_type, group_energies
+   use energy_ledger, only: group_energies
    use impact_scene, only: scene_type, contact_motion_type
    use hdf5_file, only: hdf5_file_type
    use column_table, only: column_table_type

@@ -8,8 +8,8 @@ module result_file
          request_contact_print, request_energy_print, request_node_file, request_element_file, &
          request_contact_file
    use contact_pairs, only: contact_pair_list_type
-   use impact_scene, only: scene_type, contact_motion_type, event_type, event_impact, &
-         event_capture, event_release, event_contact
+   use impact_scene, only: scene_type, contact_motion_type, event_impact, event_capture, &
+         event_release, event_contact
    use hdf5_file, only: hdf5_file_type
    use column_table, only: column_table_type
    use output_plan, only: plan_type, new_plan, is_due

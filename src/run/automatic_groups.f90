@@ -3,7 +3,6 @@
 module automatic_groups
    use kinds, only: wp, int64
    use errors, only: error_type
-   use text, only: to_text
    use places, only: fail_at
    use model, only: model_type
    use mesh, only: scheme_implicit, scheme_explicit, scheme_automatic

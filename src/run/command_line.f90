@@ -1,7 +1,6 @@
 !> What the user asks on the command line.
 module command_line
    use errors, only: error_type, new_error, status_usage
-   use text, only: to_text
    use deck_reader, only: definition_type
    implicit none
    private

@@ -4,7 +4,7 @@ module scene_setup
    use kinds, only: wp, int64
    use errors, only: error_type
    use text, only: to_text, plural
-   use places, only: fail_at, note_at, place_type, source_line_type
+   use places, only: fail_at, note_at, source_line_type
    use model, only: model_type
    use mesh, only: scheme_implicit, scheme_explicit
    use steps, only: step_type, procedure_static, procedure_dynamic, procedure_frequency
