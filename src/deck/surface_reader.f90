@@ -95,6 +95,7 @@ contains
       model%surfaces(n)%name = name
       model%surfaces(n)%place = card%place
       call move_alloc(nodes, model%surfaces(n)%nodes)
+      allocate (model%surfaces(n)%edges(3, 0), model%surfaces(n)%edge_element(0))
    end subroutine read_surface
 
    subroutine read_rigid_surface(model, n, deck, card, error)
