@@ -136,6 +136,7 @@ contains
       real(wp) :: normal(3)
 
       do p = 1, size(model%pairs)
+         if (model%pairs(p)%rigid_target == 0) cycle
          normal = model%rigid_surfaces(model%pairs(p)%rigid_target)%normal
          associate (nodes => model%surfaces(model%pairs(p)%contactor)%nodes)
             do i = 1, size(nodes)
