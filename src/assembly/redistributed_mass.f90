@@ -20,7 +20,7 @@ module redistributed_mass
    implicit none
    private
 
-   public :: redistribute_mass
+   public :: redistribute_mass, mark_contact_nodes
 
    !> A node is never closer to a contact node than this part of the element's size.
    real(wp), parameter :: least_distance = 1.0e-3_wp
@@ -60,7 +60,7 @@ contains
       has = group%kind == element_truss .or. is_solid_kind(group%kind)
    end function has_mass
 
-   !> Both faces of every pair that asks.
+   !> Nodes without mass: both faces of every pair that asks.
    pure subroutine mark_contact_nodes(model, contact)
       type(model_type), intent(in) :: model
       logical, intent(out) :: contact(:)         !! (n_nodes)
