@@ -6,8 +6,9 @@
 !> not stay so along the normal. Element by element the mass goes to the other nodes of the element,
 !> in proportion to their lumped mass over the square of their distance from the contact nodes; then
 !> each body gets back its centre and moments of inertia (`body_moments`). An element's matrix M
-!> becomes (1 + p) (D M D + diag(moved)), D zero at contact nodes. Weight and other body forces stay
-!> where the elements have them; the inertia of a base motion follows the mass.
+!> becomes (1 + p) (D M D + diag(moved)), D zero at contact nodes. Weight, other body forces and
+!> Rayleigh's alpha M stay where the elements have them; the inertia of a base motion follows the
+!> mass.
 module redistributed_mass
    use kinds, only: wp
    use errors, only: error_type

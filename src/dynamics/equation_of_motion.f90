@@ -110,10 +110,10 @@ contains
       if (.not. self%static) call damping_force(self%structure, scheme, state%v, force)
    end function resisting_force
 
-   !> Freedoms without mass are where forces balance, and Newmark's rule knows no velocity of theirs:
-   !> 2 (d1 - d0)/dt - v0 at beta = 1/4 swings for ever while the acceleration grows with the steps,
-   !> and at a smaller beta both grow without bound. Gives them the mean velocity of the step and no
-   !> acceleration; nothing else of the motion depends on these but damping.
+   !> Freedoms without mass are where forces balance; Newmark's rule knows no velocity of theirs. At
+   !> beta = 1/4 it is 2 (d1 - d0)/dt - v0, which swings for ever while the acceleration grows with
+   !> the steps, and at a smaller beta both grow without bound. Gives them the mean velocity of the
+   !> step and no acceleration; nothing else of the motion depends on these but damping.
    pure subroutine settle_massless(self, from, to)
       type(system_type), intent(in) :: self
       type(state_type), intent(in) :: from       !! at the start of a step or part of one
