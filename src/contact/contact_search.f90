@@ -11,8 +11,7 @@
 !> than the target's overhang has no partner there.
 module contact_search
    use kinds, only: int64, wp
-   use topology, only: line_derivatives, line_functions
-   use segment_projection, only: closest_on_edge, cut_edge, edge_frame
+   use segment_projection, only: closest_on_edge, cut_edge, edge_frame, edge_functions
    use target_surface, only: edge_coordinates, edges_near, target_type
    implicit none
    private
@@ -83,12 +82,15 @@ contains
       do i = 1, self%n_found
          if (any(self%edges(:, self%found(i)) == node)) cycle
          self%n_tests = self%n_tests + 1
+         distance = least
          call compare(self, x_before, x_now, query, self%found(i), trial, distance, fraction)
          if (fraction < first) then
             first = fraction
             crossed = self%found(i)
          end if
-         if (trial%edge == 0 .or. distance >= least) cycle
+         if (trial%edge == 0) cycle
+         ! Of edges that meet in the closest point the first of the surface, as bins have no order.
+         if (distance >= least .and. partner%edge < trial%edge) cycle
          least = distance
          partner = trial
       end do
@@ -169,28 +171,33 @@ contains
       call edge_frame(x(:, :self%n_edge_nodes(edge)), s, point, tangent, normal, stretch, bend)
    end function own_normal
 
-   !> One edge: the partner that it would be by its closest point, with edge 0 if it is none, and
-   !> the fraction of the step after which the node crosses it, huge if it does not.
+   !> One edge: the partner that it would be by its closest point, with edge 0 if it is none or
+   !> farther than a distance, and the fraction of the step after which the node crosses it, huge if
+   !> it does not.
    pure subroutine compare(self, x_before, x_now, query, edge, trial, distance, fraction)
       type(target_type), intent(in) :: self
       real(wp), intent(in) :: x_before(:, :), x_now(:, :)
       type(query_type), intent(in) :: query
       integer, intent(in) :: edge
       type(partner_type), intent(out) :: trial
-      real(wp), intent(out) :: distance, fraction
+      real(wp), intent(inout) :: distance        !! limit, then that of the closest point
+      real(wp), intent(out) :: fraction
       integer :: n
-      real(wp) :: x(2, 3), change(2, 3), s, s_free, path(2)
+      real(wp) :: x(2, 3), change(2, 3), shape(3), rise(3), s, s_free, path(2), limit
 
       fraction = huge(1.0_wp)
       n = self%n_edge_nodes(edge)
       x = edge_coordinates(self, edge, x_now)
       change = x - edge_coordinates(self, edge, x_before)
       call closest_on_edge(x(:, :n), query%now, s, s_free)
-      distance = norm2(query%now - matmul(x(:, :n), line_functions(n, s)))
-      path = query%now - query%before - matmul(change(:, :n), line_functions(n, s))
+      call edge_functions(n, s, shape, rise)
+      limit = distance
+      distance = norm2(query%now - matmul(x, shape))
+      path = query%now - query%before - matmul(change, shape)
       if (distance <= norm2(path) + self%unrest) then
-         call cross_edge(x(:, :n), change(:, :n), query, s, fraction)
+         call cross_edge(x(:, :n), change, query, s, fraction)
       end if
+      if (distance > limit) return
       if (distance > max(query%reach, 2.0_wp*norm2(path), 4.0_wp*overlap_share &
             *maxval(abs(x(:, 2) - x(:, 1))))) return
       call make_partner(self, x_now, query, edge, s, s_free, trial)
@@ -202,18 +209,21 @@ contains
    !> The fraction of the step after which a node crosses an edge inward, both moving straight; the
    !> path is that relative to the point of the edge where it crosses.
    pure subroutine cross_edge(x, change, query, s_end, fraction)
-      real(wp), intent(in) :: x(:, :), change(:, :) !! edge now, and its displacements in the step
+      real(wp), intent(in) :: x(:, :)            !! (2, 2 or 3) edge now
+      real(wp), intent(in) :: change(2, 3)       !! its displacements in the step
       type(query_type), intent(in) :: query
       real(wp), intent(in) :: s_end              !! closest point at the end of the step
       real(wp), intent(out) :: fraction
       integer :: round
       logical :: found
-      real(wp) :: s, start(2), when, point(2), tangent(2), normal(2), stretch, bend
+      real(wp) :: s, start(2), when, shape(3), rise(3)
+      real(wp) :: point(2), tangent(2), normal(2), stretch, bend
 
       fraction = huge(1.0_wp)
       s = s_end
       do round = 1, 3
-         start = query%before + matmul(change, line_functions(size(x, 2), s))
+         call edge_functions(size(x, 2), s, shape, rise)
+         start = query%before + matmul(change, shape)
          call cut_edge(x, start, query%now, s, when, found)
          if (.not. found) return
       end do
@@ -255,12 +265,13 @@ contains
       type(query_type), intent(in) :: query
       integer, intent(in) :: edge
       real(wp), intent(out) :: s, s_free, distance
-      real(wp) :: x(2, 3)
+      real(wp) :: x(2, 3), shape(3), rise(3)
 
       x = edge_coordinates(self, edge, x_now)
       associate (n => self%n_edge_nodes(edge))
          call closest_on_edge(x(:, :n), query%now, s, s_free)
-         distance = norm2(query%now - matmul(x(:, :n), line_functions(n, s)))
+         call edge_functions(n, s, shape, rise)
+         distance = norm2(query%now - matmul(x, shape))
       end associate
    end subroutine project
 
@@ -316,12 +327,10 @@ contains
       associate (n => self%n_edge_nodes(partner%edge))
          partner%n_nodes = n
          partner%nodes = self%edges(:, partner%edge)
-         partner%shape = 0.0_wp
-         partner%slope = 0.0_wp
-         partner%shape(:n) = line_functions(n, partner%s)
+         call edge_functions(n, partner%s, partner%shape, partner%slope)
          call edge_frame(x(:, :n), partner%s, point, partner%tangent, partner%normal, &
                partner%stretch, partner%bend)
-         partner%slope(:n) = line_derivatives(n, partner%s)/partner%stretch
+         partner%slope = partner%slope/partner%stretch
       end associate
       offset = query%now - point
    end subroutine set_frame
