@@ -57,7 +57,7 @@ contains
          self%normal(:, i) = self%normal(:, i)/norm2(self%normal(:, i))
       end do
       call edges_near(target, minval(self%x(:, :self%n), 2), maxval(self%x(:, :self%n), 2), &
-            2.0_wp*self%range, 0.0_wp)
+            2.0_wp*self%range)
       target%n_tests = target%n_tests + target%n_found
    end subroutine set_slave_edge
 
