@@ -30,7 +30,7 @@ module contact_search
    type :: partner_type
       integer :: edge = 0                        !! of the target, 0: none
       real(wp) :: s = 0.0_wp                     !! place on the edge, -1 to 1
-      logical :: at_vertex = .false.             !! X is a vertex and n not the normal of an edge
+      logical :: at_vertex = .false.             !! X stays at a vertex: slope and bend are 0
       real(wp) :: gap = 0.0_wp                   !! n . (x - X)
       real(wp) :: normal(2) = 0.0_wp             !! n, outward of the target
       real(wp) :: tangent(2) = 0.0_wp            !! (-n_y, n_x)
@@ -338,6 +338,8 @@ contains
       across = dot_product(beyond%normal, offset)
       if (norm2(offset) > 2.0_wp*touch_share*partner%stretch) then
          partner%at_vertex = .true.
+         partner%slope = 0.0_wp
+         partner%bend = 0.0_wp
          partner%normal = sign(1.0_wp, own + across)*offset/norm2(offset)
       else if (dot_product(partner%normal, beyond%normal) > kink_limit) then
          partner%normal = partner%normal + beyond%normal
