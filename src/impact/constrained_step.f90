@@ -8,7 +8,6 @@ module constrained_step
    use motion_state, only: newmark_type, state_type, correct
    use equation_of_motion, only: system_type, predict_motion, fixed_force, residual, &
          solve_motion, prepare_motion
-   use constraint_rows, only: row_curvature
    use impact_scene, only: scene_type, contact_motion_type, record_residual, note_contact_force
    use step_contact, only: contact_step_type, add_contact_forces, smallest_beta
    use row_placement, only: place_rows
@@ -47,7 +46,7 @@ contains
       to = from
       call predict_motion(scene%system, from%motion, dt, beta, to%motion)
       fixed = fixed_force(scene%system, from%motion, to%motion)
-      call describe_step(scene, from, dt, beta, step, held)
+      call describe_step(scene, dt, beta, step, held)
       reference = 0.0_wp
       left = huge(left)
       do iteration = 1, scene%system%max_iterations
@@ -71,20 +70,15 @@ contains
    end subroutine advance_smoothly
 
    !> What contact needs to know of a dynamic step.
-   subroutine describe_step(scene, from, dt, beta, step, held)
+   subroutine describe_step(scene, dt, beta, step, held)
       type(scene_type), intent(in) :: scene
-      type(contact_motion_type), intent(in) :: from
       real(wp), intent(in) :: dt, beta
       type(contact_step_type), intent(out) :: step
       logical, intent(in), optional :: held(:)
-      type(state_type) :: ahead
 
       step%to_displacement = max(beta, smallest_beta)*dt**2
       step%to_velocity = scene%system%newmark%gamma*dt
       if (present(held)) step%held = held
-      ahead = from%motion
-      ahead%v = ahead%v + dt*ahead%a
-      step%curvature = row_curvature(scene%rows, ahead)
    end subroutine describe_step
 
    !> Newton's method has converged when both the correction and the residual are small, or when the
