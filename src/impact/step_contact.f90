@@ -19,6 +19,7 @@ module step_contact
    !> displacement.
    type :: contact_step_type
       logical :: static = .false.
+      logical :: explicit = .false.              !! forces at the end do not move the end
       real(wp) :: to_displacement = 1.0_wp       !! beta h^2: displacement by acceleration
       real(wp) :: to_velocity = 1.0_wp           !! gamma h
       logical, allocatable :: held(:)            !! (n_rows) touching rows, held bilaterally; if not
@@ -81,7 +82,8 @@ contains
       type(contact_step_type), intent(in) :: step
       logical :: on(scene%rows%n)
 
-      on = scene%rows%law == law_closed .or. scene%rows%law == law_penalty
+      on = scene%rows%law == law_closed .and. (scene%rows%massless .or. .not. step%explicit)
+      on = on .or. scene%rows%law == law_penalty
       if (any(scene%rows%friction > 0.0_wp)) on = on .or. scene%rows%law == law_overlap
       on = on .or. step%static
    end function on_displacement
@@ -180,8 +182,9 @@ contains
       motion = motion/step%to_displacement
       if (.not. step%static) then
          where (.not. by_slip) motion = slip_rates(scene%rows, to%motion)/step%to_velocity
-         where (scene%rows%law == law_motion .and. from%sticking .and. .not. by_slip) &
-               motion = slip_products(scene%rows, to%motion%a)
+         where (to%touching .and. from%sticking .and. .not. by_slip .and. scene%rows%law /= law_overlap)
+            motion = slip_products(scene%rows, to%motion%a)
+         end where
       end if
       motion = motion + slip_products(scene%rows, delta)
    end function slip_motion

@@ -6,7 +6,7 @@ module run_report
    use steps, only: procedure_static, procedure_dynamic, procedure_frequency
    use skyline_matrix, only: profile_entries
    use equation_order, only: ordering_type, order_names, n_orders
-   use surfaces, only: beta_given
+   use surfaces, only: beta_given, method_fictitious_force, method_penalty, method_lagrange
    use transformation, only: impact_beta
    use impact_scene, only: event_impact, event_capture, event_release, event_contact, event_limit
    use automatic_groups, only: partition_type
@@ -138,16 +138,24 @@ contains
 
       if (simulation%scene%rows%n == 0) return
       associate (settings => simulation%scene%settings)
-         if (settings%fictitious) then
+         select case (settings%method)
+         case (method_fictitious_force)
             line = '  impact: fictitious force, return parameter ' &
                   //to_text(settings%return_parameter)
             if (settings%direct) line = line//', fixed point solved directly'
-         else
+         case (method_penalty)
+            line = '  impact: penalty, stiffness ' &
+                  //to_text(minval(simulation%scene%rows%stiffness))
+            if (maxval(simulation%scene%rows%stiffness) > minval(simulation%scene%rows%stiffness)) &
+                  line = line//' to '//to_text(maxval(simulation%scene%rows%stiffness))
+         case (method_lagrange)
+            line = '  impact: Lagrange multipliers, velocities corrected at the ends of steps'
+         case default
             line = '  impact: transformation, beta of the impact step ' &
                   //to_text(impact_beta(simulation%scene, &
                   simulation%model%steps(1)%dt))//' ('//trim(merge('given    ', &
                   'automatic', settings%beta_choice == beta_given))//')'
-         end if
+         end select
       end associate
       call say(log, line)
    end subroutine report_impact
