@@ -85,8 +85,8 @@ contains
       type(contact_motion_type), intent(inout) :: motion
       real(wp) :: limit(scene%rows%n)
 
-      motion%lambda = merge(scene%rows%stiffness*max(0.0_wp, -row_gaps(scene%rows, motion%motion)), &
-            0.0_wp, scene%rows%law == law_penalty .and. scene%rows%facing)
+      motion%lambda = scene%rows%stiffness*max(0.0_wp, -row_gaps(scene%rows, motion%motion))
+      motion%lambda = merge(motion%lambda, 0.0_wp, scene%rows%law == law_penalty)
       limit = scene%rows%friction*motion%lambda
       motion%tau = max(-limit, min(limit, motion%tau))
    end subroutine find_spring_forces

@@ -7,7 +7,8 @@ module impact_scene
    use equation_of_motion, only: system_type
    use energy_ledger, only: ledger_type, record_span, record_friction, record_springs
    use contact_geometry, only: contact_geometry_type
-   use constraint_rows, only: rows_type, row_accelerations, contact_forces, slip_increments, law_penalty
+   use constraint_rows, only: rows_type, row_accelerations, contact_forces, slip_increments, &
+         law_penalty
    implicit none
    private
 
@@ -152,8 +153,8 @@ contains
       real(wp) :: slip(scene%rows%n)
 
       call record_span(scene%ledger, scene%system, from%motion, to%motion, from%force, to%force)
-      scene%impulse = scene%impulse &
-            + (to%motion%t - from%motion%t)*(from%lambda + to%lambda)/2.0_wp
+      scene%impulse = scene%impulse + (to%motion%t - from%motion%t)*(from%lambda &
+            + scene%system%newmark%gamma*(to%lambda - from%lambda))
       call record_springs(scene%ledger, [spring_energy(scene, to%lambda), &
             spring_energy(scene, to%tau)])
       if (.not. any(scene%rows%friction > 0.0_wp)) return

@@ -1,6 +1,6 @@
 !> Lagrange multipliers with a correction of velocities at impact and release (Hughes, Taylor,
-!> Sackman, Curnier and Kanoknukulchai 1976; Taylor and Papadopoulos 1993). Events are at the ends of
-!> steps, none is located.
+!> Sackman, Curnier and Kanoknukulchai 1976; Taylor and Papadopoulos 1993). Events are at the ends
+!> of steps, none is located.
 !>
 !> Impact: a row that would overlap at the end of a step is closed by a multiplier,
 !>
@@ -8,8 +8,8 @@
 !>
 !> (with friction, Coulomb's law beside it); at beta = 0, where the force of the end cannot move the
 !> end, the multiplier acts at the start, 0 <= lambda0, g1(a0 + M^-1 Gt lambda0) >= 0 (Carpenter,
-!> Taylor and Katona 1991). Newmark's velocity v1 then depends on where in the step the wall was met.
-!> Impulses p correct it, so that the step has the whole impulses x = J + p in all rows in contact,
+!> Taylor and Katona 1991). Newmark's velocity v1 then depends on where in the step the wall was
+!> met. Impulses p correct it, so that all rows in contact have had the impulses x = J + p,
 !> J = (1 - gamma) h lambda0 + gamma h lambda1:
 !>
 !>     0 <= x,  G v+ >= 0,  complementary,  v+ = v1 + M^-1 Gt p,
@@ -30,6 +30,7 @@ module lagrange_multiplier
    use complementarity, only: solve_complementarity
    use motion_state, only: state_type
    use equation_of_motion, only: predict_motion
+   use energy_ledger, only: record_impact
    use constraint_rows, only: row_gaps, row_rates, row_accelerations, row_curvature, slip_rates, &
          gap_size, rate_size, acceleration_size, may_hit
    use impact_scene, only: scene_type, contact_motion_type, event_type, record_event, accept_span, &
@@ -92,6 +93,7 @@ contains
       closed = closed .or. (may_hit(scene%rows) .and. next%lambda > 0.0_wp .and. .not. &
             motion%touching)
       call accept_span(scene, motion, next)
+      if (.not. scene%system%newmark%beta > 0.0_wp) call book_rates(scene, motion, next)
       call let_go(scene, next, opening_rows(scene, motion, next))
       if (any(closed)) then
          call close_rows(scene, motion, next, closed, dt, error)
@@ -139,6 +141,21 @@ contains
       closed = lambda > 0.0_wp .and. .not. motion%touching
       call note_contact_force(scene, motion)
    end subroutine close_ahead
+
+   !> At beta = 0 multipliers work along the mean velocity of a step, not along its displacement as
+   !> has been booked: that differs by all the velocity that is stopped.
+   subroutine book_rates(scene, from, to)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(in) :: from, to
+      real(wp), dimension(scene%rows%n) :: lambda, moved, by_rates
+
+      lambda = from%lambda + to%lambda
+      if (.not. any(abs(lambda) > 0.0_wp)) return
+      moved = row_gaps(scene%rows, to%motion) - row_gaps(scene%rows, from%motion)
+      by_rates = (to%motion%t - from%motion%t)/2.0_wp &
+            *(row_rates(scene%rows, from%motion) + row_rates(scene%rows, to%motion))
+      call record_impact(scene%ledger, dot_product(lambda, moved - by_rates)/2.0_wp, 0.0_wp)
+   end subroutine book_rates
 
    !> Complementary forces of a compliance and the motion they give.
    subroutine solve_marked(compliance, q, lambda, motion, solved)

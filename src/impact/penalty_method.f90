@@ -106,7 +106,8 @@ contains
       do i = 1, scene%rows%n
          if (.not. marked(i)) cycle
          force = row_vector(scene%rows, i, size(force))
-         stiffness = room*scene%rows%stiffness(i)*dot_product(force, solve_mass(scene%system, force))
+         stiffness = room*scene%rows%stiffness(i) &
+               *dot_product(force, solve_mass(scene%system, force))
          if (.not. stiffness*dt**2 > 1.0_wp) cycle
          limit = 1.0_wp/sqrt(stiffness)
          call new_error(error, status_numerical, 'the contact spring of node ' &

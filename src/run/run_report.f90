@@ -144,10 +144,10 @@ contains
                   //to_text(settings%return_parameter)
             if (settings%direct) line = line//', fixed point solved directly'
          case (method_penalty)
-            line = '  impact: penalty, stiffness ' &
-                  //to_text(minval(simulation%scene%rows%stiffness))
-            if (maxval(simulation%scene%rows%stiffness) > minval(simulation%scene%rows%stiffness)) &
-                  line = line//' to '//to_text(maxval(simulation%scene%rows%stiffness))
+            associate (k => simulation%scene%rows%stiffness)
+               line = '  impact: penalty, stiffness '//to_text(minval(k))
+               if (maxval(k) > minval(k)) line = line//' to '//to_text(maxval(k))
+            end associate
          case (method_lagrange)
             line = '  impact: Lagrange multipliers, velocities corrected at the ends of steps'
          case default
