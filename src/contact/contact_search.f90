@@ -8,7 +8,8 @@
 !> of the edge's length, n is the mean of both normals where the edges differ by less than 45
 !> degrees, else that of the edge that faces the node better or, with no difference, on whose side
 !> it is. At an open end of a surface n stays that of the edge, and a node beyond the end by more
-!> than the target's overhang has no partner there.
+!> than the target's overhang has no partner there: a tenth of the edge, since bodies of one width
+!> that meet do not bulge alike.
 module contact_search
    use kinds, only: int64, wp
    use segment_projection, only: closest_on_edge, cut_edge, edge_frame, edge_functions

@@ -24,7 +24,7 @@ module target_surface
       integer, allocatable :: nodes(:)           !! nodes of the edges, ascending
       integer, allocatable :: leaving(:)         !! (n_nodes) edge a node is first or middle of
       integer, allocatable :: arriving(:)        !! (n_nodes) edge a node is last or middle of
-      real(wp) :: overhang = 1.0e-6_wp           !! of an open end that still holds, in edge lengths
+      real(wp) :: overhang = 0.1_wp              !! of an open end that still holds, in edge lengths
       integer(int64) :: n_tests = 0              !! edges that a node was compared with so far
       integer(int64) :: n_builds = 0             !! of the bins
       real(wp) :: motion(2) = 0.0_wp             !! mean displacement of the nodes in the step

@@ -7,7 +7,7 @@ module constrained_step
    use dof_map, only: reduce
    use motion_state, only: newmark_type, state_type, correct
    use equation_of_motion, only: system_type, predict_motion, fixed_force, residual, &
-         solve_motion, prepare_motion
+         solve_motion, prepare_motion, settle_massless
    use impact_scene, only: scene_type, contact_motion_type, record_residual, note_contact_force
    use step_contact, only: contact_step_type, add_contact_forces, smallest_beta
    use row_placement, only: place_rows
@@ -60,13 +60,15 @@ contains
          if (allocated(error)) return
          call correct(newmark, dt, delta, to%motion)
          call note_contact_force(scene, to)
-         if (scene%system%structure%is_linear) return
+         converged = scene%system%structure%is_linear
+         if (converged) exit
          reference = max(reference, norm2(psi), norm2(fixed))
          converged = has_converged(scene, fixed, from, to, delta, reference, left)
          call record_residual(scene, iteration, left/max(reference, tiny(1.0_wp)))
-         if (converged) return
+         if (converged) exit
       end do
-      call not_converged(scene, to%motion%t, error)
+      if (.not. converged) call not_converged(scene, to%motion%t, error)
+      call settle_massless(scene%system, from%motion, to%motion)
    end subroutine advance_smoothly
 
    !> What contact needs to know of a dynamic step.
