@@ -24,6 +24,7 @@ module pressure_recovery
       integer, allocatable :: place(:)           !! (n_nodes) place of a node in `nodes`, or 0
       integer, allocatable :: edges(:, :)        !! (3, n_edges) places of its nodes, or 0
       real(wp), allocatable :: mass(:, :, :)     !! (3, 3, n_edges) int N_i N_j
+      logical, allocatable :: forceless(:)       !! (n) a uniform pressure makes no force there
       type(profile_type) :: profile
    end type pressure_edges_type
 
@@ -48,7 +49,27 @@ contains
          call couple(self%profile, self%edges(:n, e))
          self%mass(:n, :n, e) = edge_mass(x(:2, edges(:n, e)), thickness(e), around_axis(e))
       end do
+      call find_forceless(self)
    end subroutine new_pressure_edges
+
+   !> Nodes with int N_i = 0: on the axis, the ends of quadratic edges.
+   subroutine find_forceless(self)
+      type(pressure_edges_type), intent(inout) :: self
+      real(wp), dimension(size(self%nodes)) :: area, largest
+      integer :: e, i
+
+      area = 0.0_wp
+      largest = 0.0_wp
+      do e = 1, size(self%edges, 2)
+         do i = 1, count(self%edges(:, e) > 0)
+            associate (k => self%edges(i, e))
+               area(k) = area(k) + sum(self%mass(:, i, e))
+               largest(k) = max(largest(k), maxval(abs(self%mass(:, i, e))))
+            end associate
+         end do
+      end do
+      self%forceless = abs(area) <= force_tolerance*largest
+   end subroutine find_forceless
 
    !> Numbers the nodes along the chains of edges, the open ones from their beginning.
    subroutine order_nodes(self, edges, n_nodes)
@@ -135,6 +156,7 @@ contains
       pressures = 0.0_wp
       active = abs(forces) > force_tolerance*maxval(abs(forces))
       if (.not. any(active)) return
+      call join_forceless(self, active)
       call new_skyline(matrix, self%profile)
       do i = 1, size(forces)
          if (.not. active(i)) call matrix%add(i, i, 1.0_wp)
@@ -147,6 +169,21 @@ contains
       pressures = merge(forces, 0.0_wp, active)
       call solve(matrix, pressures)
    end function recover_pressures
+
+   !> A node that no pressure shows on has one where another node of its edge has.
+   pure subroutine join_forceless(self, active)
+      type(pressure_edges_type), intent(in) :: self
+      logical, intent(inout) :: active(:)
+      integer :: e, n
+
+      if (.not. any(self%forceless)) return
+      do e = 1, size(self%edges, 2)
+         n = count(self%edges(:, e) > 0)
+         associate (nodes => self%edges(:n, e))
+            if (any(active(nodes))) active(nodes) = active(nodes) .or. self%forceless(nodes)
+         end associate
+      end do
+   end subroutine join_forceless
 
    pure subroutine add_edge(matrix, nodes, mass, active)
       type(skyline_type), intent(inout) :: matrix

@@ -10,7 +10,7 @@ module contact_faces
    implicit none
    private
 
-   public :: contact_face_type, new_contact_faces, find_pressures, find_row_forces
+   public :: contact_face_type, new_contact_faces, find_pressures, find_row_forces, share_contact
 
    !> Rows first to last, the nodes of one surface against its partner.
    type :: contact_face_type
@@ -21,6 +21,7 @@ module contact_faces
       logical :: own_partner = .false.           !! a surface against itself
       type(pressure_edges_type) :: edges
       real(wp), allocatable :: thickness(:)      !! (nodes of edges) mean of the edges around
+      integer, allocatable :: row(:)             !! (nodes of edges) its row
    end type contact_face_type
 
 contains
@@ -48,6 +49,7 @@ contains
             end do
             faces(f)%last = n
             call take_surface(faces(f), model, p, pass)
+            call find_rows(faces(f), list%rows)
          end do
          call set_facing(faces(:f), model%pairs(p)%passes)
       end do
@@ -83,6 +85,18 @@ contains
          face%thickness = mean_thickness(face%edges, model%nodes%x, edges, thickness)
       end associate
    end subroutine take_surface
+
+   pure subroutine find_rows(face, rows)
+      type(contact_face_type), intent(inout) :: face
+      type(contact_row_type), intent(in) :: rows(:)
+      integer :: i
+
+      allocate (face%row(size(face%edges%nodes)), source=0)
+      if (size(face%row) == 0) return
+      do i = face%first, face%last
+         face%row(face%edges%place(rows(i)%node)) = i
+      end do
+   end subroutine find_rows
 
    !> Thickness at the nodes, the mean of the edges around by their lengths.
    pure function mean_thickness(self, x, edges, thickness) result(mean)
@@ -213,6 +227,36 @@ contains
          end do
       end associate
    end subroutine add_row
+
+   !> Where two faces have rows on each other the force of a node may be that of its partners' rows
+   !> alone: then it has their state and slip.
+   subroutine share_contact(faces, scene, list, lambda, states, slips)
+      type(contact_face_type), intent(in) :: faces(:)
+      type(scene_type), intent(in) :: scene
+      type(contact_pair_list_type), intent(in) :: list
+      real(wp), intent(in) :: lambda(:)          !! (n_rows)
+      integer, intent(inout) :: states(:)        !! (n_rows)
+      real(wp), intent(inout) :: slips(:)        !! (n_rows)
+      real(wp), parameter :: least_share = 1.0e-6_wp
+      integer :: f, i, k, node
+
+      associate (g => scene%rows%along_normal, map => scene%system%structure%map)
+         do f = 1, size(faces)
+            do i = faces(f)%first_facing, faces(f)%last_facing
+               if (.not. lambda(i) > 0.0_wp) cycle
+               do k = g%first(i), g%first(i + 1) - 1
+                  node = map%node(g%freedom(k))
+                  if (node == list%rows(i)%node .or. faces(f)%edges%place(node) == 0) cycle
+                  if (abs(g%coefficient(k)) < least_share) cycle
+                  associate (own => faces(f)%row(faces(f)%edges%place(node)))
+                     states(own) = max(states(own), states(i))
+                     slips(own) = max(slips(own), slips(i))
+                  end associate
+               end do
+            end do
+         end do
+      end associate
+   end subroutine share_contact
 
    !> Forces of all rows with friction on the pair's slave: rows of a second pass push the master,
    !> their sign turns.

@@ -44,7 +44,7 @@ module grid_recorder
          'contact force, with friction', &
          'smallest gap of contact nodes, NaN where nothing is near, 0 at other nodes', &
          'contact pressure at slave nodes; 0 at surfaces made of nodes, which have no area', &
-         'path that contact nodes have slid along their partners in contact', &
+         'path that contact nodes have slid along their partners, where there is friction', &
          '0 no contact node, 1 open, 2 touching (sticking if there is friction), 3 sliding']
 
 contains

@@ -5,20 +5,22 @@ module result_file
    use model, only: model_type
    use steps, only: request_type, request_node_print, request_element_print, &
          request_contact_print, request_energy_print, request_node_file, request_element_file, &
-         request_contact_file, quantity_cf, quantity_cdis, quantity_cpress
+         request_contact_file, quantity_cf, quantity_cdis, quantity_cpress, &
+         quantity_cstate
    use contact_pairs, only: contact_pair_list_type
    use impact_scene, only: scene_type, contact_motion_type, event_impact, event_capture, &
          event_release, event_contact
    use hdf5_file, only: hdf5_file_type
    use column_table, only: column_table_type
    use output_plan, only: plan_type, new_plan, is_due
-   use snapshot, only: snapshot_type, take_snapshot
+   use snapshot, only: snapshot_type, take_snapshot, state_stuck
    use history_recorder, only: history_type, new_history, record_history
    use energy_recorder, only: new_energies, record_energies
    use grid_recorder, only: grid_type, new_grid, record_frame
    use model_recorder, only: write_model
    use gap_probe, only: gap_probe_type, new_gap_probe, probe_gaps
-   use contact_faces, only: contact_face_type, new_contact_faces, find_pressures, find_row_forces
+   use contact_faces, only: contact_face_type, new_contact_faces, find_pressures, find_row_forces, &
+         share_contact
    implicit none
    private
 
@@ -204,8 +206,11 @@ contains
       if (scene%rows%n == 0) return
       wanted = self%plan%file .or. self%plan%contact_print
       if (wanted(quantity_cdis)) call probe_gaps(self%gaps, scene, motion, snapshot%gap)
-      if (wanted(quantity_cpress)) call find_pressures(self%faces, scene, list, snapshot%lambda, &
-            snapshot%pressure)
+      if (wanted(quantity_cpress) .or. wanted(quantity_cstate)) call find_pressures(self%faces, &
+            scene, list, snapshot%lambda, snapshot%pressure)
+      call share_contact(self%faces, scene, list, snapshot%lambda, snapshot%state, snapshot%slip)
+      ! on the axis a pressure makes no force
+      where (snapshot%pressure > 0.0_wp) snapshot%state = max(snapshot%state, state_stuck)
       if (wanted(quantity_cf)) call find_row_forces(self%faces, scene, list, snapshot%lambda, &
             snapshot%tau, snapshot%force)
    end subroutine measure_contact
