@@ -162,6 +162,7 @@ contains
 
          if (self%field(q) == 0) return
          largest = 0.0_wp
+         largest(list%rows%node) = -huge(1.0_wp)
          do i = 1, size(list%rows)
             associate (node => list%rows(i)%node)
                largest(node) = max(largest(node), values(i))
