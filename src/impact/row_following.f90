@@ -4,7 +4,7 @@ module row_following
    use kinds, only: wp
    use errors, only: error_type
    use motion_state, only: state_type
-   use constraint_rows, only: row_gaps, row_rates, row_curvature, rate_size
+   use constraint_rows, only: row_gaps, row_rates, row_curvature, rate_size, law_penalty
    use row_placement, only: place_rows
    use impact_scene, only: scene_type, contact_motion_type, event_type, record_event, &
          event_release, rate_tolerance
@@ -86,6 +86,7 @@ contains
             motion%motion, reach(scene, motion, dt))
    end subroutine rows_here
 
+   !> How far rows look for partners: what may be gone in the step, and how deep springs are in.
    pure function reach(scene, motion, dt) result(distance)
       type(scene_type), intent(in) :: scene
       type(contact_motion_type), intent(in) :: motion
@@ -94,6 +95,8 @@ contains
       real(wp), parameter :: least_share = 1.0e-6_wp
 
       distance = reach_factor*dt*(maxval(abs(motion%motion%v)) + dt*maxval(abs(motion%motion%a)))
+      if (any(scene%rows%law == law_penalty)) distance = distance + maxval( &
+            motion%lambda/scene%rows%stiffness, mask=scene%rows%law == law_penalty)
       distance = max(distance, least_share*scene%geometry%size)
    end function reach
 

@@ -142,14 +142,17 @@ contains
 
       if (simulation%scene%rows%n == 0) return
       associate (settings => simulation%scene%settings)
-         select case (method_of(simulation))
+         select case (settings%method)
          case (method_fictitious_force)
             line = 'fictitious force, return parameter '//to_text(settings%return_parameter)
             if (settings%direct) line = line//', fixed point solved directly'
          case (method_penalty)
-            line = 'penalty, stiffness '//to_text(minval(simulation%scene%rows%stiffness))
+            associate (k => simulation%scene%rows%stiffness)
+               line = 'penalty, stiffness '//to_text(minval(k))
+               if (maxval(k) > minval(k)) line = line//' to '//to_text(maxval(k))
+            end associate
          case (method_lagrange)
-            line = 'Lagrange multipliers: no overlap at the end of a step, then none of the speeds'
+            line = 'Lagrange multipliers, velocities corrected at the ends of steps'
          case default
             line = 'transformation, beta of the impact step ' &
                   //to_text(impact_beta(simulation%scene, &
@@ -159,13 +162,6 @@ contains
       end associate
       call say(log, '  impact: '//line)
    end subroutine report_impact
-
-   pure function method_of(simulation) result(method)
-      type(simulation_type), intent(in) :: simulation
-      integer :: method
-
-      method = simulation%model%interactions(simulation%contact%rows(1)%interaction)%method
-   end function method_of
 
    !> Each contact pair: who faces whom, and how they behave.
    subroutine report_pairs(simulation, log)
