@@ -65,6 +65,7 @@ contains
       call make_impact_method(self%model, self%contact, self%method, self%scene%settings, error)
       if (allocated(error)) return
       self%scene%impulse = [(0.0_wp, i=1, self%scene%rows%n)]
+      self%scene%curvature = self%scene%impulse
       call check_freedoms_named(self, error)
       if (allocated(error)) return
       call initial_motion(self, error)
