@@ -274,7 +274,8 @@ contains
 
       centre = pass%circle%point(:2)
       if (pass%circle%amplitude > 0 .and. .not. pass%frozen) centre = centre &
-            + pass%circle%motion(:2)*amplitude_at(self%amplitudes(pass%circle%amplitude), positions%t)
+            + pass%circle%motion(:2) &
+            *amplitude_at(self%amplitudes(pass%circle%amplitude), positions%t)
       arm = positions%now(:2, self%rows(i)%node) - centre
       distance = norm2(arm)
       if (.not. distance > 0.0_wp) arm = [0.0_wp, 1.0_wp]

@@ -79,7 +79,8 @@ contains
       integer :: i
 
       call set_initial_motion(self)
-      call adjust_pairs(self%model, self%contact, self%scene, self%motion%motion, adjustments, error)
+      call adjust_pairs(self%model, self%contact, self%scene, self%motion%motion, adjustments, &
+            error)
       if (allocated(error)) return
       do i = 1, size(adjustments)
          call add_remark(self, adjustment_remark(self%model, self%contact, adjustments(i)))
