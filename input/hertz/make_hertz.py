@@ -89,10 +89,10 @@ def disc_on_plane():
                 '*CONTACT PAIR, INTERACTION=smooth, TYPE=NODE TO SURFACE\nlow, plane\n')
 
 
-def disc_on_disc(title, mesh, push, youngs, kind):
+def disc_on_disc(title, mesh, push, youngs, kind, surfaces='low, top'):
     return deck(title, mesh, push, section('up', youngs[0]) + section('down', youngs[1]),
                 'up_axis, 1\ndown_axis, 1\ndown_middle, 2\nup_middle, 2, 2, <push>\n',
-                f'*CONTACT PAIR, INTERACTION=smooth, TYPE={kind}\nlow, top\n')
+                f'*CONTACT PAIR, INTERACTION=smooth, TYPE={kind}\n{surfaces}\n')
 
 
 def texts():
@@ -105,10 +105,13 @@ def texts():
         'disc_on_plane.inp': disc_on_plane(),
         'matching.inp': disc_on_disc('Two equal discs with matching meshes', 'matching.inc',
                                      2 * 4.85e-3, (1000, 1000), 'NODE TO SURFACE'),
-        'nonmatching.inp': disc_on_disc(unequal + 'weighted rows', 'nonmatching.inc', 4.5e-3,
+        'nonmatching.inp': disc_on_disc(unequal + 'weighted rows', 'nonmatching.inc', 3.98e-3,
                                         (1000, 10000), 'SURFACE TO SURFACE'),
-        'nonmatching_nodes.inp': disc_on_disc(unequal + 'node rows', 'nonmatching.inc', 4.5e-3,
+        'nonmatching_nodes.inp': disc_on_disc(unequal + 'node rows', 'nonmatching.inc', 3.98e-3,
                                               (1000, 10000), 'NODE TO SURFACE'),
+        'nonmatching_swapped.inp': disc_on_disc(
+            unequal + 'node rows, the coarser side as slave', 'nonmatching.inc', 3.98e-3,
+            (1000, 10000), 'NODE TO SURFACE', 'top, low'),
     }
 
 

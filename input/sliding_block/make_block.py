@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from mesh_tools import rectangle, write  # noqa: E402
+from mesh_tools import node_set, rectangle, write  # noqa: E402
 
 LENGTH, HEIGHT, YOUNG, GRAVITY = 2.0, 1.0, 1.0e4, 9.81
 WAVE = math.sqrt(YOUNG)                 # speed of waves at density 1, and nu = 0
@@ -19,6 +19,7 @@ def mesh(nodes=4, angle=0.0, along=8):
     sides = body.rim(lambda x: x[1] < 1e-9)
     return ('** written by make_block.py\n'
             + body.moved(turn=-math.radians(angle)).cards(f'CPS{nodes}', 'block')
+            + node_set('seen', body.points(lambda x: abs(x[0]) < 1e-9 and x[1] > HEIGHT - 1e-9))
             + body.surface('base', sides))
 
 
@@ -53,6 +54,8 @@ base, plane
 <dt>, <end>
 *DLOAD
 block, GRAV, {GRAVITY}, 0, -1, 0
+*NODE PRINT, NSET=seen
+U, V
 *NODE FILE, FREQUENCY=10
 U, V
 *EL FILE, FREQUENCY=10
