@@ -4,6 +4,7 @@ module needed_freedoms
    use kinds, only: wp
    use mesh, only: element_mass, element_gap
    use model, only: model_type
+   use surfaces, only: contact_pair_type, rigid_plane
    use gap_normals, only: gap_normal
    use histories, only: boundary_type, nodal_value_type, gravity_type
    use steps, only: step_type
@@ -134,12 +135,13 @@ contains
       logical, intent(inout) :: named(:, :)
       integer :: i, j, p, node
       real(wp) :: normal(3)
+      logical :: direction(3)
 
       do p = 1, size(model%pairs)
-         normal = model%rigid_surfaces(model%pairs(p)%rigid_target)%normal
+         direction = contact_directions(model, model%pairs(p))
          associate (nodes => model%surfaces(model%pairs(p)%contactor)%nodes)
             do i = 1, size(nodes)
-               named(:, nodes(i)) = named(:, nodes(i)) .or. abs(normal) > 0.0_wp
+               named(:, nodes(i)) = named(:, nodes(i)) .or. direction
             end do
          end associate
       end do
@@ -152,5 +154,20 @@ contains
          end do
       end do
    end subroutine name_contact
+
+   !> In which directions the slave of a pair can be pushed: along the normal of a plane, with
+   !> friction or against what is curved in the whole x-y plane.
+   pure function contact_directions(model, pair) result(direction)
+      type(model_type), intent(in) :: model
+      type(contact_pair_type), intent(in) :: pair
+      logical :: direction(3)
+
+      direction = [.true., .true., .false.]
+      if (pair%rigid_target == 0) return
+      associate (rigid => model%rigid_surfaces(pair%rigid_target))
+         if (rigid%kind == rigid_plane) direction = abs(rigid%normal) > 0.0_wp
+      end associate
+      if (model%interactions(pair%interaction)%friction > 0.0_wp) direction(:2) = .true.
+   end function contact_directions
 
 end module needed_freedoms

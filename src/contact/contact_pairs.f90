@@ -1,6 +1,6 @@
-!> Contact rows: for every pair of things that may touch, the gap g = sum c_k u_k + g0 + s(t) as a
-!> linear form of displacements (G d + g0), g < 0 meaning overlap. Small rotations: normals are
-!> fixed.
+!> Contact rows: who may touch whom. A row stands for one node of a slave surface, or for one gap
+!> element; against a plane, and for a gap element, its normal is fixed and the gap a linear form
+!> of displacements, g = sum c_k u_k + g0 + s(t), g < 0 meaning overlap.
 module contact_pairs
    use kinds, only: wp
    use errors, only: error_type
@@ -9,17 +9,28 @@ module contact_pairs
    use mesh, only: element_gap
    use properties, only: name_length
    use model, only: model_type
+   use surfaces, only: rigid_plane
    use gap_normals, only: gap_normal
    implicit none
    private
 
    public :: contact_row_type, contact_pair_list_type, find_contact_rows
+   public :: row_fixed, row_circle, row_surface
 
-   !> One node against a rigid plane, or one gap element.
+   !> What a row's contactor may touch.
+   integer, parameter :: row_fixed = 0           !! a plane, or the other node of a gap element
+   integer, parameter :: row_circle = 1          !! a rigid circle
+   integer, parameter :: row_surface = 2         !! the edges of a surface
+
+   !> One node against a rigid or deformable surface, or one gap element.
    type :: contact_row_type
       integer :: pair = 0                        !! index into the pair names
       integer :: node = 0                        !! index of the contactor node
       integer :: interaction = 0                 !! index into the model's, 0: default
+      integer :: kind = row_fixed
+      integer :: model_pair = 0                  !! index of the model's pair, 0: gap element
+      integer :: pass = 1                        !! 2: the master surface's nodes on the slave
+      integer :: other = 0                       !! the other node of a gap element
       integer :: n_terms = 0
       integer :: term_node(6) = 0, term_dof(6) = 0
       real(wp) :: coefficient(6) = 0.0_wp
@@ -38,25 +49,26 @@ module contact_pairs
 
 contains
 
-   !> Rows of all contact pairs, node by node, then of all gap elements.
+   !> Rows of all contact pairs, node by node, those of a second pass after the first; then of all
+   !> gap elements.
    subroutine find_contact_rows(model, list, error)
       type(model_type), intent(in) :: model
       type(contact_pair_list_type), intent(out) :: list
       type(error_type), allocatable, intent(out) :: error
-      integer :: p, i, n, e
+      integer :: p, pass, n, e
 
       n = count(model%elements%kind(:model%elements%n) == element_gap)
       do p = 1, size(model%pairs)
-         n = n + size(model%surfaces(model%pairs(p)%contactor)%nodes)
+         do pass = 1, model%pairs(p)%passes
+            n = n + size(model%surfaces(contactor_surface(model, p, pass))%nodes)
+         end do
       end do
       allocate (list%rows(n), list%names(0))
       n = 0
       do p = 1, size(model%pairs)
-         call append_name(list, trim(model%surfaces(model%pairs(p)%contactor)%name)//'-' &
-               //model%rigid_surfaces(model%pairs(p)%rigid_target)%name)
-         do i = 1, size(model%surfaces(model%pairs(p)%contactor)%nodes)
-            n = n + 1
-            call make_plane_row(model, p, i, list%rows(n))
+         call append_name(list, pair_name(model, p))
+         do pass = 1, model%pairs(p)%passes
+            call add_pair(model, p, pass, list, n)
          end do
       end do
       do e = 1, model%elements%n
@@ -69,6 +81,55 @@ contains
          list%rows(n)%pair = pair_index(list)
       end do
    end subroutine find_contact_rows
+
+   !> The surface whose nodes have rows: the slave, in the second pass the master.
+   pure function contactor_surface(model, pair, pass) result(surface)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: pair, pass
+      integer :: surface
+
+      surface = model%pairs(pair)%contactor
+      if (pass == 2) surface = model%pairs(pair)%target
+   end function contactor_surface
+
+   pure function pair_name(model, pair) result(name)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: pair
+      character(len=:), allocatable :: name
+
+      name = trim(model%surfaces(model%pairs(pair)%contactor)%name)//'-'
+      if (model%pairs(pair)%target > 0) then
+         name = name//trim(model%surfaces(model%pairs(pair)%target)%name)
+      else
+         name = name//trim(model%rigid_surfaces(model%pairs(pair)%rigid_target)%name)
+      end if
+   end function pair_name
+
+   !> The rows of one pass of a pair.
+   pure subroutine add_pair(model, pair, pass, list, n)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: pair, pass
+      type(contact_pair_list_type), intent(inout) :: list
+      integer, intent(inout) :: n                !! rows so far
+      integer :: i
+
+      associate (nodes => model%surfaces(contactor_surface(model, pair, pass))%nodes)
+         do i = 1, size(nodes)
+            n = n + 1
+            associate (row => list%rows(n))
+               row%pair = pair_index(list)
+               row%model_pair = pair
+               row%pass = pass
+               row%interaction = model%pairs(pair)%interaction
+               row%place = model%pairs(pair)%place
+               row%node = nodes(i)
+               row%kind = row_surface
+               if (model%pairs(pair)%target > 0) cycle
+               call face_rigid(model, pair, row)
+            end associate
+         end do
+      end associate
+   end subroutine add_pair
 
    !> Appends the name of a pair unless it was the last one.
    subroutine append_name(list, name)
@@ -94,24 +155,23 @@ contains
       pair = size(list%names)
    end function pair_index
 
-   !> g = n . (x + u - x_plane - s(t)).
-   pure subroutine make_plane_row(model, pair, i, row)
+   !> A plane: g = n . (x + u - x_plane - s(t)). The normal of a circle is not known yet.
+   pure subroutine face_rigid(model, pair, row)
       type(model_type), intent(in) :: model
-      integer, intent(in) :: pair, i
-      type(contact_row_type), intent(out) :: row
+      integer, intent(in) :: pair
+      type(contact_row_type), intent(inout) :: row
 
-      row%pair = pair
-      row%interaction = model%pairs(pair)%interaction
-      row%place = model%pairs(pair)%place
-      row%node = model%surfaces(model%pairs(pair)%contactor)%nodes(i)
-      associate (plane => model%rigid_surfaces(model%pairs(pair)%rigid_target))
-         row%normal = plane%normal
-         row%offset = dot_product(plane%normal, model%nodes%x(:, row%node) - plane%point)
-         row%amplitude = plane%amplitude
-         row%motion = -dot_product(plane%normal, plane%motion)
+      associate (rigid => model%rigid_surfaces(model%pairs(pair)%rigid_target))
+         row%kind = row_circle
+         row%amplitude = rigid%amplitude
+         if (rigid%kind /= rigid_plane) return
+         row%kind = row_fixed
+         row%normal = rigid%normal
+         row%offset = dot_product(rigid%normal, model%nodes%x(:, row%node) - rigid%point)
+         row%motion = -dot_product(rigid%normal, rigid%motion)
       end associate
       call add_terms(row, row%node, row%normal)
-   end subroutine make_plane_row
+   end subroutine face_rigid
 
    !> g = clearance + n . (u2 - u1), n from node 1 to node 2.
    subroutine make_gap_row(model, e, row, error)
@@ -132,6 +192,7 @@ contains
          return
       end if
       row%node = model%elements%nodes(first + 1)
+      row%other = model%elements%nodes(first)
       row%interaction = model%sections(model%elements%section(e))%interaction
       row%normal = normal
       row%offset = model%sections(model%elements%section(e))%clearance

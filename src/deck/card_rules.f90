@@ -40,14 +40,15 @@ module card_rules
          'BASE MOTION;step;AMPLITUDE=!/DOF=!;scale', &
          'INITIAL CONDITIONS;both;TYPE=!;node or set, dof, value', &
          'EQUATION;model;;number of terms, then up to 4 triples of node, dof, coefficient a line', &
-         'SURFACE;model;NAME=!/TYPE=!;nodes or node sets', &
-         'RIGID SURFACE;model;NAME=!/TYPE=!/AMPLITUDE=;a point x, y, z; then the normal '// &
-         'nx, ny, nz; with AMPLITUDE then dx, dy, dz, size', &
+         'SURFACE;model;NAME=!/TYPE=;element or set, S1 to S4 (lines without); with '// &
+         'TYPE=NODE nodes or node sets', &
+         'RIGID SURFACE;model;NAME=!/TYPE=!/AMPLITUDE=;a point (a centre) x, y, z; then the '// &
+         'normal nx, ny, nz (the radius); with AMPLITUDE then dx, dy, dz, size', &
          'SURFACE INTERACTION;model;NAME=!;-', &
          'IMPACT;model;METHOD=/RESTITUTION=/RETURN=/SOLUTION=/BETA=/CAPTURE=/MAX EVENTS=/'// &
-         'EVENTS=/~STIFFNESS=;-', &
-         'FRICTION;~;;mu', &
-         'CONTACT PAIR;model;INTERACTION=!/TYPE=/PASSES=/~MASS=/~ADJUST?/~SMALL SLIDING;'// &
+         'EVENTS=/STIFFNESS=;-', &
+         'FRICTION;model;;mu', &
+         'CONTACT PAIR;model;INTERACTION=!/TYPE=/PASSES=/MASS=/ADJUST?/SMALL SLIDING;'// &
          'slave surface, master surface', &
          'GAP;model;ELSET=!/INTERACTION=!;clearance[, nx, ny, nz]', &
          'STEP;any;INC=/NAME=/~NLGEOM?/~PERTURBATION;-', &

@@ -17,7 +17,8 @@ module deck_reader
    use interaction_reader, only: read_interactions, check_methods
    use section_reader, only: read_sections
    use group_reader, only: read_groups
-   use surface_reader, only: read_surfaces, read_pairs
+   use surface_reader, only: read_surfaces
+   use pair_reader, only: read_pairs
    use condition_reader, only: read_boundaries, read_initial_conditions
    use equation_reader, only: read_equations, check_equations
    use step_reader, only: read_steps

@@ -1,16 +1,17 @@
-!> `*SURFACE INTERACTION` with its `*IMPACT`.
+!> `*SURFACE INTERACTION` with its `*IMPACT` and its `*FRICTION`.
 module interaction_reader
    use kinds, only: wp
    use errors, only: error_type
    use places, only: source_type, fail_at, note_at
    use surfaces, only: interaction_type, method_transformation, method_fictitious_force
-   use surfaces, only: beta_given
+   use surfaces, only: method_penalty, method_lagrange, beta_given
    use properties, only: section_gap
    use model, only: model_type
    use model_building, only: find_named
    use cards, only: deck_type, card_type, count_cards, get_word, get_real_parameter
    use cards, only: get_name_parameter, get_integer_parameter, parameter_place, has_parameter
    use cards, only: parameter_index
+   use fields, only: fields_type, only_line, field_place, get_reals
    use numbers, only: parse_fraction
    use source_reader, only: add_note
    use words, only: word_length, squeezed
@@ -19,36 +20,57 @@ module interaction_reader
 
    public :: read_interactions, check_methods
 
+   character(len=word_length), parameter :: method_words(*) = [character(len=word_length) :: &
+         'TRANSFORMATION', 'FICTITIOUS FORCE', 'PENALTY', 'LAGRANGE']
+   integer, parameter :: methods(*) = [method_transformation, method_fictitious_force, &
+         method_penalty, method_lagrange]
+
 contains
 
-   !> Interactions in the order of the deck; each *IMPACT belongs to the one before it.
+   !> Interactions in the order of the deck; *IMPACT and *FRICTION belong to the one before them.
    subroutine read_interactions(model, deck, error)
       type(model_type), intent(inout) :: model
       type(deck_type), intent(in) :: deck
       type(error_type), allocatable, intent(out) :: error
-      integer :: i, n
+      integer :: i, n, with_friction
 
       allocate (model%interactions(count_cards(deck, 'SURFACEINTERACTION')))
       n = 0
+      with_friction = 0
       do i = 1, deck%n_cards
          select case (deck%cards(i)%keyword)
          case ('SURFACEINTERACTION')
             n = n + 1
             call open_interaction(model, n, deck%cards(i), error)
          case ('IMPACT')
-            if (n == 0) then
-               call fail_at(error, model%source, deck%cards(i)%place, &
-                     '*IMPACT belongs to a surface interaction', &
-                     cure='put *SURFACE INTERACTION, NAME=name before it')
-               return
-            end if
+            call check_opened(n, deck%cards(i), model%source, error)
+            if (allocated(error)) return
             call read_impact(model%interactions(n), deck%cards(i), model%source, error)
+         case ('FRICTION')
+            call check_opened(n, deck%cards(i), model%source, error)
+            if (allocated(error)) return
+            call read_friction(model%interactions(n), with_friction == n, deck, &
+                  deck%cards(i), model%source, error)
+            with_friction = n
          case default
             cycle
          end select
          if (allocated(error)) return
       end do
    end subroutine read_interactions
+
+   !> There must be an interaction that *IMPACT or *FRICTION belongs to.
+   subroutine check_opened(n, card, source, error)
+      integer, intent(in) :: n   !! interactions so far
+      type(card_type), intent(in) :: card
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+
+      if (n > 0) return
+      call fail_at(error, source, card%place, &
+            '*'//card%keyword//' belongs to a surface interaction', &
+            cure='put *SURFACE INTERACTION, NAME=name before it')
+   end subroutine check_opened
 
    subroutine open_interaction(model, n, card, error)
       type(model_type), intent(inout) :: model
@@ -79,6 +101,10 @@ contains
       interaction%has_impact = .true.
       call read_method(interaction, card, source, error)
       if (allocated(error)) return
+      call refuse_strangers(interaction%method, card, source, error)
+      if (allocated(error)) return
+      call read_stiffness(interaction, card, source, error)
+      if (allocated(error)) return
       call read_speeds(interaction, card, source, error)
       if (allocated(error)) return
       call read_beta(interaction, card, source, error)
@@ -86,50 +112,106 @@ contains
       call get_integer_parameter(card, 'MAXEVENTS', 1, interaction%max_events, source, error)
    end subroutine read_impact
 
-   !> METHOD, and the parameters that only one of the methods has.
+   !> METHOD, SOLUTION and EVENTS.
    subroutine read_method(interaction, card, source, error)
       type(interaction_type), intent(inout) :: interaction
       type(card_type), intent(in) :: card
       type(source_type), intent(in) :: source
       type(error_type), allocatable, intent(out) :: error
-      character(len=word_length), parameter :: methods(*) = [character(len=word_length) :: &
-            'TRANSFORMATION', 'FICTITIOUS FORCE', '~PENALTY', '~LAGRANGE']
       character(len=word_length), parameter :: solutions(*) = [character(len=word_length) :: &
             'ITERATION', 'DIRECT']
       character(len=word_length), parameter :: events(*) = [character(len=word_length) :: &
             'SUBSTEP', '~ANCHOR']
       integer :: choice
 
-      call get_word(card, 'METHOD', methods, choice, source, error)
+      call get_word(card, 'METHOD', method_words, choice, source, error)
       if (allocated(error)) return
-      interaction%method = method_transformation
-      if (choice == 2) interaction%method = method_fictitious_force
+      interaction%method = methods(max(1, choice))
       call get_word(card, 'SOLUTION', solutions, choice, source, error)
       if (allocated(error)) return
       interaction%direct = choice == 2
       call get_word(card, 'EVENTS', events, choice, source, error)
-      if (allocated(error)) return
-      if (interaction%method == method_transformation) then
-         call refuse(card, 'RETURN', 'TRANSFORMATION', source, error)
-         if (allocated(error)) return
-         call refuse(card, 'SOLUTION', 'TRANSFORMATION', source, error)
-      else
-         call refuse(card, 'BETA', 'FICTITIOUS FORCE', source, error)
-         if (allocated(error)) return
-         call refuse(card, 'EVENTS', 'FICTITIOUS FORCE', source, error)
-      end if
    end subroutine read_method
 
    !> A parameter that a method would ignore is an error.
-   subroutine refuse(card, name, method, source, error)
+   subroutine refuse_strangers(method, card, source, error)
+      integer, intent(in) :: method
       type(card_type), intent(in) :: card
-      character(len=*), intent(in) :: name, method
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      character(len=word_length), parameter :: names(*) = [character(len=word_length) :: &
+            'RESTITUTION', 'RETURN', 'SOLUTION', 'BETA', 'CAPTURE', 'MAX EVENTS', 'EVENTS', &
+            'STIFFNESS']
+      logical, parameter :: yes = .true., no = .false.
+      !> Which of the names mean something, a column a method in the order of their words.
+      logical, parameter :: known(8, 4) = reshape([ &
+            yes, no, no, yes, yes, yes, yes, no, &
+            yes, yes, yes, no, yes, yes, no, no, &
+            no, no, no, no, no, no, no, yes, &
+            no, no, no, no, no, no, no, no], [8, 4])
+      integer :: i, m
+
+      m = findloc(methods, method, dim=1)
+      do i = 1, size(names)
+         if (known(i, m) .or. .not. has_parameter(card, squeezed(names(i)))) cycle
+         call fail_at(error, source, parameter_place(card, squeezed(names(i))), &
+               trim(names(i))//' means nothing with METHOD='//trim(method_words(m)), &
+               cure='remove it, or change the method')
+         return
+      end do
+   end subroutine refuse_strangers
+
+   !> STIFFNESS, which the penalty method must have.
+   subroutine read_stiffness(interaction, card, source, error)
+      type(interaction_type), intent(inout) :: interaction
+      type(card_type), intent(in) :: card
       type(source_type), intent(in) :: source
       type(error_type), allocatable, intent(out) :: error
 
-      if (has_parameter(card, name)) call fail_at(error, source, parameter_place(card, name), &
-            name//' means nothing with METHOD='//method, cure='remove it, or change the method')
-   end subroutine refuse
+      if (interaction%method /= method_penalty) return
+      if (.not. has_parameter(card, 'STIFFNESS')) then
+         call fail_at(error, source, parameter_place(card, 'METHOD'), &
+               'METHOD=PENALTY needs the parameter STIFFNESS', &
+               cure='write STIFFNESS=k, the force on a node that overlaps by one unit of length')
+         return
+      end if
+      call get_real_parameter(card, 'STIFFNESS', interaction%stiffness, source, error)
+      if (allocated(error)) return
+      if (.not. interaction%stiffness > 0.0_wp) call fail_at(error, source, &
+            parameter_place(card, 'STIFFNESS'), 'STIFFNESS must be positive', &
+            cure='write a number above 0')
+   end subroutine read_stiffness
+
+   !> One coefficient. CalculiX takes a second number, a slope for sticking; here that is exact.
+   subroutine read_friction(interaction, again, deck, card, source, error)
+      type(interaction_type), intent(inout) :: interaction
+      logical, intent(in) :: again   !! whether the interaction has friction already
+      type(deck_type), intent(in) :: deck
+      type(card_type), intent(in) :: card
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      type(fields_type) :: fields
+      real(wp) :: values(1)
+
+      if (again) then
+         call fail_at(error, source, card%place, 'this interaction has *FRICTION already', &
+               cure='keep one of the two')
+         return
+      end if
+      call only_line(fields, deck, card, 2, source, error)
+      if (allocated(error)) return
+      if (fields%n == 2) then
+         call fail_at(error, source, field_place(fields, 2), &
+               'there is no stick slope here: a node that sticks does not move at all', &
+               cure='write the coefficient of friction alone')
+         return
+      end if
+      call get_reals(fields, 1, 1, 'coefficient of friction', values, source, error)
+      if (allocated(error)) return
+      interaction%friction = values(1)
+      if (values(1) < 0.0_wp) call fail_at(error, source, field_place(fields, 1), &
+            'the coefficient of friction must not be negative', cure='write a number from 0 up')
+   end subroutine read_friction
 
    !> RESTITUTION, RETURN and CAPTURE.
    subroutine read_speeds(interaction, card, source, error)

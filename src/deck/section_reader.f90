@@ -212,6 +212,11 @@ contains
                cure='define it with *SURFACE INTERACTION; '// &
                advice(name, [model%interactions%name]))
          return
+      else if (model%interactions(section%interaction)%friction > 0.0_wp) then
+         call fail_at(error, model%source, parameter_place(card, 'INTERACTION'), &
+               'gap elements have no friction, this interaction has', &
+               cure='give them an interaction without *FRICTION, or use a *CONTACT PAIR')
+         return
       end if
       call only_line(fields, deck, card, 4, model%source, error)
       if (allocated(error)) return

@@ -14,6 +14,7 @@ module energy_ledger
    private
 
    public :: ledger_type, open_ledger, record_span, record_impact, close_increment
+   public :: record_friction
    public :: group_energies
 
    !> Energies and works since the start of the run.
@@ -90,6 +91,15 @@ contains
       self%impact_loss = self%impact_loss + loss
       self%external_work = self%external_work + wall_work
    end subroutine record_impact
+
+   !> Work of friction that has been booked as taken by contact forces.
+   pure subroutine record_friction(self, work)
+      type(ledger_type), intent(inout) :: self
+      real(wp), intent(in) :: work               !! positive where it takes energy
+
+      self%friction = self%friction + work
+      self%impact_loss = self%impact_loss - work
+   end subroutine record_friction
 
    !> Energies at the end of an increment and the balance error.
    subroutine close_increment(self, system, state)

@@ -5,13 +5,13 @@ module constrained_step
    use errors, only: error_type, new_error, status_numerical
    use text, only: to_text
    use dof_map, only: reduce
-   use complementarity, only: solve_complementarity, solve_equality
    use motion_state, only: newmark_type, state_type, correct
    use equation_of_motion, only: system_type, predict_motion, fixed_force, residual, &
          solve_motion, prepare_motion
-   use constraint_rows, only: row_gaps, row_accelerations, row_forces
-   use impact_scene, only: scene_type, contact_motion_type, record_residual
-   use row_compliance, only: find_compliance
+   use constraint_rows, only: row_curvature
+   use impact_scene, only: scene_type, contact_motion_type, record_residual, note_contact_force
+   use step_contact, only: contact_step_type, add_contact_forces, smallest_beta
+   use row_placement, only: place_rows
    use overlap_force, only: add_overlap_force
    implicit none
    private
@@ -36,6 +36,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       logical, intent(in), optional :: held(:)   !! (n_rows) rows held bilaterally, the others free
       type(newmark_type) :: newmark
+      type(contact_step_type) :: step
       real(wp), dimension(size(from%motion%d)) :: fixed, psi, delta
       real(wp) :: reference, left
       logical :: converged
@@ -46,6 +47,7 @@ contains
       to = from
       call predict_motion(scene%system, from%motion, dt, beta, to%motion)
       fixed = fixed_force(scene%system, from%motion, to%motion)
+      call describe_step(scene, from, dt, beta, step, held)
       reference = 0.0_wp
       left = huge(left)
       do iteration = 1, scene%system%max_iterations
@@ -53,11 +55,12 @@ contains
          call prepare_motion(scene%system, dt, beta, to%motion%d, from%motion%history, error)
          if (allocated(error)) return
          delta = solve_motion(scene%system, psi)
-         call add_contact(scene, to, delta, error, held)
+         call add_contact_forces(scene, step, from, to, delta, error)
          if (allocated(error)) return
-         if (scene%settings%fictitious) call add_overlap_force(scene, beta*dt**2, to, delta, error)
+         if (scene%settings%iterated) call add_overlap_force(scene, beta*dt**2, to, delta, error)
          if (allocated(error)) return
          call correct(newmark, dt, delta, to%motion)
+         call note_contact_force(scene, to)
          if (scene%system%structure%is_linear) return
          reference = max(reference, norm2(psi), norm2(fixed))
          converged = has_converged(scene, fixed, from, to, delta, reference, left)
@@ -67,38 +70,22 @@ contains
       call not_converged(scene, to%motion%t, error)
    end subroutine advance_smoothly
 
-   !> Adds the contact forces of the touching rows to the change of the acceleration.
-   subroutine add_contact(scene, to, delta, error, held)
-      type(scene_type), intent(inout) :: scene
-      type(contact_motion_type), intent(inout) :: to
-      real(wp), intent(inout) :: delta(:)
-      type(error_type), allocatable, intent(out) :: error
+   !> What contact needs to know of a dynamic step.
+   subroutine describe_step(scene, from, dt, beta, step, held)
+      type(scene_type), intent(in) :: scene
+      type(contact_motion_type), intent(in) :: from
+      real(wp), intent(in) :: dt, beta
+      type(contact_step_type), intent(out) :: step
       logical, intent(in), optional :: held(:)
-      integer, allocatable :: active(:)
-      real(wp), allocatable :: w(:, :), x(:, :), q(:), lambda(:)
-      logical :: solved
-      integer :: i
+      type(state_type) :: ahead
 
-      to%lambda = 0.0_wp
-      if (.not. any(to%touching)) return
-      active = pack([(i, i=1, scene%rows%n)], to%touching)
-      if (present(held)) active = pack([(i, i=1, scene%rows%n)], held)
-      call find_compliance(scene, active, w, x)
-      q = row_accelerations(scene%rows, to%motion%a + delta)
-      q = q(active)
-      allocate (lambda(size(active)))
-      if (present(held)) then
-         call solve_equality(w, q, lambda, solved)
-      else
-         call solve_complementarity(w, q, lambda, solved)
-      end if
-      if (.not. solved) then
-         call dependent_rows(scene, to%motion%t, error)
-         return
-      end if
-      to%lambda(active) = lambda
-      delta = delta + matmul(x, lambda)
-   end subroutine add_contact
+      step%to_displacement = max(beta, smallest_beta)*dt**2
+      step%to_velocity = scene%system%newmark%gamma*dt
+      if (present(held)) step%held = held
+      ahead = from%motion
+      ahead%v = ahead%v + dt*ahead%a
+      step%curvature = row_curvature(scene%rows, ahead)
+   end subroutine describe_step
 
    !> Newton's method has converged when both the correction and the residual are small, or when the
    !> correction is small and the residual has come down to round-off: it falls no further. Nearly
@@ -116,7 +103,7 @@ contains
       motion = norm2(to%motion%a)
       if (scene%system%static) motion = norm2(to%motion%d)
       psi = residual(scene%system, fixed, from%motion%history, to%motion) &
-            + row_forces(scene%rows, to%lambda, size(psi))
+            + to%force
       before = left
       left = norm2(reduce(scene%system%structure%map, psi))
       converged = left <= scene%system%tolerance*reference
@@ -136,16 +123,6 @@ contains
             //'  cure: a smaller increment, or tables without sharp drops of stiffness')
    end subroutine not_converged
 
-   subroutine dependent_rows(scene, t, error)
-      type(scene_type), intent(in) :: scene
-      real(wp), intent(in) :: t
-      type(error_type), allocatable, intent(out) :: error
-
-      call new_error(error, status_numerical, 'contact conditions depend on each other at time ' &
-            //to_text(t)//' ('//to_text(scene%rows%n)//' rows in all)'//new_line('a') &
-            //'  cure: let no node touch the same wall twice, and none fixed along the normal')
-   end subroutine dependent_rows
-
    !> S(d) = f + Gt lambda with 0 <= lambda, g >= 0 on all rows; the motion solution is a
    !> displacement here. Velocities and accelerations are zero.
    subroutine solve_statically(scene, from, dt, to, error)
@@ -154,6 +131,7 @@ contains
       real(wp), intent(in) :: dt
       type(contact_motion_type), intent(out) :: to
       type(error_type), allocatable, intent(out) :: error
+      type(contact_step_type) :: step
       real(wp), dimension(size(from%motion%d)) :: fixed, psi, delta
       real(wp) :: reference, left
       logical :: converged
@@ -163,7 +141,11 @@ contains
       call predict_motion(scene%system, from%motion, dt, 0.25_wp, to%motion)
       to%motion%v = 0.0_wp
       to%motion%a = 0.0_wp
+      to%touching = .false.
+      step%static = .true.
       fixed = fixed_force(scene%system, from%motion, to%motion)
+      call place_rows(scene%rows, scene%geometry, scene%system%structure%map, from%motion, &
+            to%motion, huge(1.0_wp))
       reference = 0.0_wp
       left = huge(left)
       do iteration = 1, scene%system%max_iterations
@@ -177,16 +159,21 @@ contains
          end if
          if (allocated(error)) return
          delta = solve_motion(scene%system, psi)
-         call add_static_contact(scene, to, delta, error)
+         call add_contact_forces(scene, step, from, to, delta, error)
          if (allocated(error)) return
          to%motion%d = to%motion%d + delta
-         if (scene%system%structure%is_linear) return
+         call note_contact_force(scene, to)
+         converged = scene%system%structure%is_linear .and. .not. scene%rows%moving
+         if (converged) exit
+         call place_rows(scene%rows, scene%geometry, scene%system%structure%map, from%motion, &
+               to%motion, huge(1.0_wp))
          reference = max(reference, norm2(psi), norm2(fixed))
          converged = has_converged(scene, fixed, from, to, delta, reference, left)
          call record_residual(scene, iteration, left/max(reference, tiny(1.0_wp)))
-         if (converged) return
+         if (converged) exit
       end do
-      call not_converged(scene, to%motion%t, error)
+      to%touching = to%lambda > 0.0_wp
+      if (.not. converged) call not_converged(scene, to%motion%t, error)
    end subroutine solve_statically
 
    !> Residual of a static step's first iteration, where prescribed freedoms have gone ahead of all
@@ -209,24 +196,5 @@ contains
       behind%d = from%d - part*(ahead - from%d)
       psi = psi - (residual(system, fixed, from%history, behind) - psi)/part
    end function first_residual
-
-   subroutine add_static_contact(scene, to, delta, error)
-      type(scene_type), intent(inout) :: scene
-      type(contact_motion_type), intent(inout) :: to
-      real(wp), intent(inout) :: delta(:)
-      type(error_type), allocatable, intent(out) :: error
-      real(wp), allocatable :: w(:, :), x(:, :), q(:)
-      logical :: solved
-      integer :: i
-
-      if (scene%rows%n == 0) return
-      call find_compliance(scene, [(i, i=1, scene%rows%n)], w, x)
-      q = row_gaps(scene%rows, to%motion) + row_accelerations(scene%rows, delta)
-      call solve_complementarity(w, q, to%lambda, solved)
-      if (.not. solved) call dependent_rows(scene, to%motion%t, error)
-      if (allocated(error)) return
-      delta = delta + matmul(x, to%lambda)
-      to%touching = to%lambda > 0.0_wp
-   end subroutine add_static_contact
 
 end module constrained_step

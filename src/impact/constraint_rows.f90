@@ -1,112 +1,68 @@
-!> The contact rows on the freedoms of a structure: gaps, their rates and accelerations, contact
-!> forces, and how an impact behaves in each row.
+!> The contact rows on the freedoms of a structure: gaps, their rates and accelerations, slip,
+!> contact forces, and how an impact behaves in each row.
 module constraint_rows
    use kinds, only: wp
-   use errors, only: error_type
-   use places, only: fail_at
-   use text, only: to_text
    use histories, only: amplitude_type
    use amplitude_value, only: amplitude_at, amplitude_slope
-   use model, only: model_type
-   use surfaces, only: interaction_type
-   use structure, only: structure_type
-   use contact_pairs, only: contact_pair_list_type
    use motion_state, only: state_type
+   use row_matrix, only: row_matrix_type, multiply, multiply_absolute, add_transposed
    implicit none
    private
 
-   public :: rows_type, new_rows, row_gaps, row_rates, row_accelerations, row_forces, row_vector
+   public :: rows_type, row_gaps, row_rates, row_accelerations, row_forces, row_vector
+   public :: row_curvature, slip_rates, slip_products, slip_vector, contact_forces
+   public :: slip_increments, may_hit
    public :: gap_size, rate_size, acceleration_size, wall_rates
+   public :: law_motion, law_closed, law_penalty, law_overlap
 
-   !> G by rows over freedoms, with g = G d + offset + c(t).
+   !> How a row's contact force follows in a step.
+   integer, parameter :: law_motion = 0      !! from the acceleration, while the row touches
+   integer, parameter :: law_closed = 1      !! gap >= 0, force >= 0 at the end of the step
+   integer, parameter :: law_penalty = 2     !! stiffness times overlap at the end of the step
+   integer, parameter :: law_overlap = 3     !! the fictitious force
+
+   !> A row that faces nothing has this gap.
+   real(wp), parameter, public :: far_gap = 1.0e30_wp
+
+   !> G by rows over freedoms, with g = G d + offset + c(t), and the directions of slip beside it.
+   !> Rows of bodies that slide on each other are placed anew in every step (row_placement).
    type :: rows_type
       integer :: n = 0
-      integer, allocatable :: first(:)           !! (n+1) row pointers
-      integer, allocatable :: freedom(:)
-      real(wp), allocatable :: coefficient(:)
+      type(row_matrix_type) :: along_normal      !! G
+      type(row_matrix_type) :: along_tangent     !! T: slip rate of the contactor on its partner
+      type(row_matrix_type) :: turning           !! rate at which the partner's normal turns
       real(wp), allocatable :: offset(:)         !! (n) g0
+      real(wp), allocatable :: bend(:)           !! (n) curvature of the partner, < 0 if convex
+      logical, allocatable :: facing(:)          !! (n) the row has a partner
       integer, allocatable :: amplitude(:)       !! (n) of a moving wall, 0: at rest
+      real(wp), allocatable :: wall(:, :)        !! (3, n) displacement of the wall at amplitude 1
       real(wp), allocatable :: motion(:)         !! (n) c at amplitude 1
+      real(wp), allocatable :: sliding_motion(:) !! (n) the same of the slip
       type(amplitude_type), allocatable :: amplitudes(:)
       logical, allocatable :: sustained(:)       !! (n) no restitution given
       real(wp), allocatable :: restitution(:)    !! (n) e, zero where sustained
       real(wp), allocatable :: capture(:)        !! (n) capture speed, negative: from the step
+      integer, allocatable :: law(:)             !! (n) one of the law_ parameters
+      logical, allocatable :: massless(:)        !! (n) the contact nodes have no mass
+      real(wp), allocatable :: stiffness(:)      !! (n) penalty
+      real(wp), allocatable :: friction(:)       !! (n) Coulomb's mu
       integer, allocatable :: node_id(:)         !! (n) the deck's id of the contactor node
       integer, allocatable :: pair(:)            !! (n) index of the pair
       real(wp), allocatable :: normal(:, :)      !! (3, n) of the force on the contactor node
+      real(wp), allocatable :: tangent(:, :)     !! (3, n) of its friction force
+      real(wp), allocatable :: weight(:)         !! (n) length a force acts on, 0: not known
+      logical :: moving = .false.                !! some rows are placed anew in every step
    end type rows_type
 
 contains
 
-   !> Places the rows on the structure's freedoms. A row with none is an error at its deck line.
-   subroutine new_rows(self, list, model, structure, error)
-      type(rows_type), intent(out) :: self
-      type(contact_pair_list_type), intent(in) :: list
-      type(model_type), intent(in) :: model
-      type(structure_type), intent(in) :: structure
-      type(error_type), allocatable, intent(out) :: error
-      integer :: i, j, f, n
-
-      self%n = size(list%rows)
-      allocate (self%first(self%n + 1), self%freedom(6*self%n), self%coefficient(6*self%n))
-      allocate (self%normal(3, self%n))
-      n = 0
-      do i = 1, self%n
-         self%first(i) = n + 1
-         do j = 1, list%rows(i)%n_terms
-            f = structure%map%freedom(list%rows(i)%term_dof(j), list%rows(i)%term_node(j))
-            if (f == 0) cycle
-            n = n + 1
-            self%freedom(n) = f
-            self%coefficient(n) = list%rows(i)%coefficient(j)
-         end do
-         self%normal(:, i) = list%rows(i)%normal
-         if (n >= self%first(i)) cycle
-         call fail_at(error, model%source, list%rows(i)%place, 'node ' &
-               //to_text(model%nodes%id(list%rows(i)%node)) &
-               //' cannot move along the contact normal: it has no freedom there', &
-               'give the node a mass or an element, or leave it out of the contact')
-         return
-      end do
-      self%first(self%n + 1) = n + 1
-      self%offset = list%rows%offset
-      self%amplitude = list%rows%amplitude
-      self%motion = list%rows%motion
-      self%amplitudes = model%amplitudes
-      self%pair = list%rows%pair
-      self%node_id = model%nodes%id(list%rows%node)
-      call copy_behaviour(self, list, model)
-   end subroutine new_rows
-
-   subroutine copy_behaviour(self, list, model)
-      type(rows_type), intent(inout) :: self
-      type(contact_pair_list_type), intent(in) :: list
-      type(model_type), intent(in) :: model
-      type(interaction_type) :: interaction
-      integer :: i
-
-      allocate (self%sustained(self%n), self%restitution(self%n), self%capture(self%n))
-      do i = 1, self%n
-         interaction = model%interactions(list%rows(i)%interaction)
-         self%sustained(i) = .not. interaction%has_restitution
-         self%restitution(i) = merge(interaction%restitution, 0.0_wp, interaction%has_restitution)
-         self%capture(i) = merge(interaction%capture, -1.0_wp, interaction%has_capture)
-      end do
-   end subroutine copy_behaviour
-
-   !> G u of all rows.
-   pure function row_products(self, u) result(products)
+   !> Rows whose impacts are jumps of velocity, and that have a partner to hit.
+   pure function may_hit(self) result(may)
       type(rows_type), intent(in) :: self
-      real(wp), intent(in) :: u(:)               !! (n_freedoms)
-      real(wp) :: products(self%n)
-      integer :: i
+      logical :: may(self%n)
 
-      do i = 1, self%n
-         associate (from => self%first(i), to => self%first(i + 1) - 1)
-            products(i) = dot_product(self%coefficient(from:to), u(self%freedom(from:to)))
-         end associate
-      end do
-   end function row_products
+      may = self%law == law_motion .and. self%facing
+   end function may_hit
 
    !> Gaps g = G d + g0 + c(t).
    pure function row_gaps(self, state) result(gaps)
@@ -114,7 +70,8 @@ contains
       type(state_type), intent(in) :: state
       real(wp) :: gaps(self%n)
 
-      gaps = row_products(self, state%d) + self%offset + wall_positions(self, state%t)
+      gaps = multiply(self%along_normal, state%d) + self%offset &
+            + wall_positions(self, self%motion, state%t)
    end function row_gaps
 
    !> Gap rates G v + c'(t).
@@ -123,21 +80,70 @@ contains
       type(state_type), intent(in) :: state
       real(wp) :: rates(self%n)
 
-      rates = row_products(self, state%v) + wall_rates(self, state%t)
+      rates = multiply(self%along_normal, state%v) + wall_rates(self, state%t)
    end function row_rates
 
-   !> Gap accelerations G a; a wall moves at piecewise constant speed.
+   !> G a: gap accelerations but for `row_curvature`; a wall moves at piecewise constant speed.
    pure function row_accelerations(self, a) result(accelerations)
       type(rows_type), intent(in) :: self
       real(wp), intent(in) :: a(:)               !! (n_freedoms)
       real(wp) :: accelerations(self%n)
 
-      accelerations = row_products(self, a)
+      accelerations = multiply(self%along_normal, a)
    end function row_accelerations
 
-   !> c(t) of moving walls.
-   pure function wall_positions(self, t) result(positions)
+   !> (dG/dt) v, the part of the gap acceleration that comes from sliding at v_t along an edge whose
+   !> normal turns: -2 v_t (n . dv/dx) - (n . x'') v_t^2.
+   pure function row_curvature(self, state) result(accelerations)
       type(rows_type), intent(in) :: self
+      type(state_type), intent(in) :: state
+      real(wp) :: accelerations(self%n)
+      real(wp) :: slip(self%n)
+
+      accelerations = 0.0_wp
+      if (.not. self%moving) return
+      slip = slip_rates(self, state)
+      accelerations = -slip*(2.0_wp*multiply(self%turning, state%v) + self%bend*slip)
+   end function row_curvature
+
+   !> T v + s'(t): speed at which the contactor slides on its partner.
+   pure function slip_rates(self, state) result(rates)
+      type(rows_type), intent(in) :: self
+      type(state_type), intent(in) :: state
+      real(wp) :: rates(self%n)
+      integer :: i
+
+      rates = multiply(self%along_tangent, state%v)
+      do i = 1, self%n
+         if (self%amplitude(i) > 0) rates(i) = rates(i) + self%sliding_motion(i) &
+               *amplitude_slope(self%amplitudes(self%amplitude(i)), state%t)
+      end do
+   end function slip_rates
+
+   !> T u of all rows.
+   pure function slip_products(self, u) result(products)
+      type(rows_type), intent(in) :: self
+      real(wp), intent(in) :: u(:)               !! (n_freedoms)
+      real(wp) :: products(self%n)
+
+      products = multiply(self%along_tangent, u)
+   end function slip_products
+
+   !> Slip of the contactors on their partners between two states.
+   pure function slip_increments(self, from, to) result(slip)
+      type(rows_type), intent(in) :: self
+      type(state_type), intent(in) :: from, to
+      real(wp) :: slip(self%n)
+
+      slip = multiply(self%along_tangent, to%d - from%d) &
+            + wall_positions(self, self%sliding_motion, to%t) &
+            - wall_positions(self, self%sliding_motion, from%t)
+   end function slip_increments
+
+   !> c(t) of moving walls.
+   pure function wall_positions(self, motion, t) result(positions)
+      type(rows_type), intent(in) :: self
+      real(wp), intent(in) :: motion(:)          !! (n) position at amplitude 1
       real(wp), intent(in) :: t
       real(wp) :: positions(self%n)
       integer :: i
@@ -145,7 +151,7 @@ contains
       positions = 0.0_wp
       do i = 1, self%n
          if (self%amplitude(i) == 0) cycle
-         positions(i) = self%motion(i)*amplitude_at(self%amplitudes(self%amplitude(i)), t)
+         positions(i) = motion(i)*amplitude_at(self%amplitudes(self%amplitude(i)), t)
       end do
    end function wall_positions
 
@@ -163,34 +169,55 @@ contains
       end do
    end function wall_rates
 
-   !> Gt lambda: contact forces (or impulses) on freedoms.
+   !> Gt lambda: normal contact forces (or impulses) on freedoms.
    pure function row_forces(self, lambda, n_freedoms) result(force)
       type(rows_type), intent(in) :: self
       real(wp), intent(in) :: lambda(:)          !! (n)
       integer, intent(in) :: n_freedoms
       real(wp) :: force(n_freedoms)
-      integer :: i, k
 
       force = 0.0_wp
-      do i = 1, self%n
-         if (.not. abs(lambda(i)) > 0.0_wp) cycle
-         do k = self%first(i), self%first(i + 1) - 1
-            force(self%freedom(k)) = force(self%freedom(k)) + lambda(i)*self%coefficient(k)
-         end do
-      end do
+      call add_transposed(self%along_normal, lambda, force)
    end function row_forces
+
+   !> Gt lambda + Tt tau: contact forces with friction.
+   pure function contact_forces(self, lambda, tau, n_freedoms) result(force)
+      type(rows_type), intent(in) :: self
+      real(wp), intent(in) :: lambda(:), tau(:)  !! (n)
+      integer, intent(in) :: n_freedoms
+      real(wp) :: force(n_freedoms)
+
+      force = row_forces(self, lambda, n_freedoms)
+      call add_transposed(self%along_tangent, tau, force)
+   end function contact_forces
 
    !> Row i of G as a vector of forces.
    pure function row_vector(self, i, n_freedoms) result(force)
       type(rows_type), intent(in) :: self
       integer, intent(in) :: i, n_freedoms
       real(wp) :: force(n_freedoms)
-      real(wp) :: unit(self%n)
 
-      unit = 0.0_wp
-      unit(i) = 1.0_wp
-      force = row_forces(self, unit, n_freedoms)
+      force = 0.0_wp
+      associate (g => self%along_normal)
+         associate (from => g%first(i), to => g%first(i + 1) - 1)
+            force(g%freedom(from:to)) = g%coefficient(from:to)
+         end associate
+      end associate
    end function row_vector
+
+   !> Row i of T as a vector of forces.
+   pure function slip_vector(self, i, n_freedoms) result(force)
+      type(rows_type), intent(in) :: self
+      integer, intent(in) :: i, n_freedoms
+      real(wp) :: force(n_freedoms)
+
+      force = 0.0_wp
+      associate (t => self%along_tangent)
+         associate (from => t%first(i), to => t%first(i + 1) - 1)
+            force(t%freedom(from:to)) = t%coefficient(from:to)
+         end associate
+      end associate
+   end function slip_vector
 
    !> Size of the numbers that gaps are differences of: what round-off is relative to.
    pure function gap_size(self, state, dt) result(size_of_gap)
@@ -199,8 +226,9 @@ contains
       real(wp), intent(in) :: dt
       real(wp) :: size_of_gap
 
-      size_of_gap = maxval(absolute_products(self, state%d) + dt*abs(row_rates(self, state)) &
-            + abs(self%offset + wall_positions(self, state%t)))
+      size_of_gap = max(0.0_wp, maxval(multiply_absolute(self%along_normal, state%d) &
+            + dt*abs(row_rates(self, state)) &
+            + abs(self%offset + wall_positions(self, self%motion, state%t)), mask=self%facing))
    end function gap_size
 
    !> Size of the speeds that gap rates are differences of.
@@ -209,7 +237,8 @@ contains
       type(state_type), intent(in) :: state
       real(wp) :: size_of_rate
 
-      size_of_rate = maxval(absolute_products(self, state%v) + abs(wall_rates(self, state%t)))
+      size_of_rate = max(0.0_wp, maxval(multiply_absolute(self%along_normal, state%v) &
+            + abs(wall_rates(self, state%t)), mask=self%facing))
    end function rate_size
 
    !> Size of the accelerations that gap accelerations are differences of.
@@ -218,21 +247,8 @@ contains
       real(wp), intent(in) :: a(:)               !! (n_freedoms)
       real(wp) :: size_of_acceleration
 
-      size_of_acceleration = maxval(absolute_products(self, a))
+      size_of_acceleration = max(0.0_wp, maxval(multiply_absolute(self%along_normal, a), &
+            mask=self%facing))
    end function acceleration_size
-
-   !> |G| |u| of all rows.
-   pure function absolute_products(self, u) result(products)
-      type(rows_type), intent(in) :: self
-      real(wp), intent(in) :: u(:)
-      real(wp) :: products(self%n)
-      integer :: i
-
-      do i = 1, self%n
-         associate (from => self%first(i), to => self%first(i + 1) - 1)
-            products(i) = sum(abs(self%coefficient(from:to)*u(self%freedom(from:to))))
-         end associate
-      end do
-   end function absolute_products
 
 end module constraint_rows

@@ -11,7 +11,8 @@ module fictitious_force
          rate_tolerance, &
          acceleration_tolerance
    use impact_method, only: impact_method_type
-   use impact_jump, only: restart_acceleration, set_rates
+   use contact_impulses, only: restart_acceleration, set_rates
+   use row_following, only: rows_ahead, rows_here
    use constrained_step, only: advance_smoothly
    implicit none
    private
@@ -38,6 +39,8 @@ contains
       motion%touching = .false.
       motion%leaving = .false.
       motion%entry_speed = 0.0_wp
+      motion%sticking = .false.
+      call rows_here(scene, motion, dt)
       call restart_acceleration(scene, motion, error)
    end subroutine start
 
@@ -51,6 +54,7 @@ contains
       type(contact_motion_type) :: next
       logical :: ending(scene%rows%n)
 
+      call rows_ahead(scene, motion, dt)
       call advance_smoothly(scene, motion, dt, scene%system%newmark%beta, next, error)
       if (allocated(error)) return
       call accept_span(scene, motion, next)

@@ -3,10 +3,12 @@ module first_contacts
    use kinds, only: wp
    use errors, only: error_type
    use complementarity, only: solve_complementarity
-   use constraint_rows, only: row_gaps, row_rates, row_accelerations, gap_size, rate_size
+   use constraint_rows, only: row_gaps, row_rates, row_accelerations, row_curvature, gap_size, &
+         rate_size, may_hit
    use impact_scene, only: scene_type, contact_motion_type, gap_tolerance, rate_tolerance
-   use impact_jump, only: impact_type, compliance_type, apply_impact, restart_acceleration, &
-         mass_compliance
+   use row_compliance, only: compliance_type, mass_compliance
+   use contact_impulses, only: restart_acceleration
+   use impact_jump, only: impact_type, apply_impact
    implicit none
    private
 
@@ -35,10 +37,10 @@ contains
       call capture_pressed(scene, motion, gap_limit, impact%rate_limit, error)
       if (allocated(error)) return
       do i = 1, scene%settings%max_events
-         impact%new = .not. motion%touching .and. row_gaps(scene%rows, motion%motion) <= gap_limit &
-               .and. row_rates(scene%rows, motion%motion) < -impact%rate_limit
+         impact%new = may_hit(scene%rows) .and. .not. motion%touching .and. &
+               row_gaps(scene%rows, motion%motion) <= gap_limit .and. row_rates(scene%rows, motion%motion) < -impact%rate_limit
          if (.not. any(impact%new)) exit
-         impact%near = .not. motion%touching .and. .not. impact%new .and. &
+         impact%near = may_hit(scene%rows) .and. .not. motion%touching .and. .not. impact%new .and. &
                .not. scene%rows%restitution > 0.0_wp .and. &
                row_gaps(scene%rows, motion%motion) <= gap_limit
          call apply_impact(scene, motion, impact, error)
@@ -59,15 +61,16 @@ contains
       real(wp), allocatable :: lambda(:)
       logical :: resting(scene%rows%n), solved
 
-      resting = row_gaps(scene%rows, motion%motion) <= gap_limit .and. &
+      resting = may_hit(scene%rows) .and. row_gaps(scene%rows, motion%motion) <= gap_limit .and. &
             abs(row_rates(scene%rows, motion%motion)) <= rate_limit
       motion%touching = .false.
       call restart_acceleration(scene, motion, error)
       if (allocated(error) .or. .not. any(resting)) return
-      call mass_compliance(scene, resting, compliance, error)
+      call mass_compliance(scene, resting, compliance, error, .true.)
       if (allocated(error)) return
       allocate (lambda(size(compliance%rows)))
-      a_rows = row_accelerations(scene%rows, motion%motion%a)
+      a_rows = row_accelerations(scene%rows, motion%motion%a) &
+            + row_curvature(scene%rows, motion%motion)
       call solve_complementarity(compliance%w, a_rows(compliance%rows), lambda, solved)
       if (solved) motion%touching(compliance%rows) = lambda > 0.0_wp
    end subroutine capture_pressed

@@ -47,6 +47,8 @@ contains
       settings%return_parameter = first%return_parameter
       settings%direct = first%direct
       settings%fictitious = first%method == method_fictitious_force
+      settings%iterated = settings%fictitious .and. .not. &
+            any(model%interactions(list%rows%interaction)%friction > 0.0_wp)
       select case (first%method)
       case (method_fictitious_force)
          allocate (fictitious_force_type :: method)

@@ -5,14 +5,16 @@ module impact_scene
    use surfaces, only: beta_automatic
    use motion_state, only: state_type
    use equation_of_motion, only: system_type
-   use energy_ledger, only: ledger_type, record_span
-   use constraint_rows, only: rows_type, row_forces, row_accelerations
+   use energy_ledger, only: ledger_type, record_span, record_friction
+   use contact_geometry, only: contact_geometry_type
+   use constraint_rows, only: rows_type, row_accelerations, contact_forces, slip_increments
    implicit none
    private
 
    public :: scene_type, contact_motion_type, event_type, impact_settings_type
    public :: event_impact, event_capture, event_release, event_contact, event_limit
    public :: new_contact_motion, record_event, record_residual, accept_span, capture_speeds
+   public :: note_contact_force
 
    integer, parameter :: event_impact = 1     !! velocity jump
    integer, parameter :: event_capture = 2    !! a row begins sustained contact
@@ -35,7 +37,11 @@ module impact_scene
    type :: contact_motion_type
       type(state_type) :: motion
       real(wp), allocatable :: lambda(:)         !! (n_rows) contact forces, positive in compression
+      real(wp), allocatable :: tau(:)            !! (n_rows) friction forces along the tangents
+      real(wp), allocatable :: force(:)          !! (n_freedoms) contact forces in the acceleration
       logical, allocatable :: touching(:)        !! (n_rows) in sustained contact
+      logical, allocatable :: sticking(:)        !! (n_rows) in contact without slip
+      real(wp), allocatable :: slip(:)           !! (n_rows) path of slip so far
       real(wp), allocatable :: entry_speed(:)    !! (n_rows) fictitious force: approach speed
       logical, allocatable :: leaving(:)         !! (n_rows) fictitious force: on its way out
       logical :: fresh = .false.                 !! acceleration just restarted, no time since
@@ -58,6 +64,7 @@ module impact_scene
       real(wp) :: beta = 0.0_wp
       integer :: max_events = 100
       logical :: fictitious = .false.            !! overlapping rows get a fictitious force
+      logical :: iterated = .false.              !! found by an iteration: no friction
       real(wp) :: return_parameter = 0.3_wp      !! alpha
       logical :: direct = .false.
       logical :: locate_release = .true.
@@ -67,6 +74,7 @@ module impact_scene
    type :: scene_type
       type(system_type) :: system
       type(rows_type) :: rows
+      type(contact_geometry_type) :: geometry
       type(impact_settings_type) :: settings
       type(ledger_type) :: ledger
       type(event_type), allocatable :: events(:) !! grown by doubling
@@ -91,8 +99,12 @@ contains
       self%motion%history = [(0.0_wp, i=1, n_history)]
       self%lambda = [(0.0_wp, i=1, n_rows)]
       self%entry_speed = self%lambda
+      self%tau = self%lambda
+      self%slip = self%lambda
+      self%force = self%motion%d
       self%touching = [(.false., i=1, n_rows)]
       self%leaving = self%touching
+      self%sticking = self%touching
    end subroutine new_contact_motion
 
    !> Remembers the residual after a Newton iteration.
@@ -122,17 +134,28 @@ contains
       scene%events(scene%n_events) = event
    end subroutine record_event
 
-   !> Takes a span of smooth motion as it is: its works and contact impulses are booked.
+   !> Keeps the contact forces that the acceleration holds.
+   pure subroutine note_contact_force(scene, motion)
+      type(scene_type), intent(in) :: scene
+      type(contact_motion_type), intent(inout) :: motion
+
+      motion%force = contact_forces(scene%rows, motion%lambda, motion%tau, size(motion%motion%d))
+   end subroutine note_contact_force
+
+   !> Takes a span of smooth motion as it is: its works, slip and contact impulses are booked.
    subroutine accept_span(scene, from, to)
       type(scene_type), intent(inout) :: scene
-      type(contact_motion_type), intent(in) :: from, to
-      integer :: n
+      type(contact_motion_type), intent(in) :: from
+      type(contact_motion_type), intent(inout) :: to
+      real(wp) :: slip(scene%rows%n)
 
-      n = size(from%motion%d)
-      call record_span(scene%ledger, scene%system, from%motion, to%motion, &
-            row_forces(scene%rows, from%lambda, n), row_forces(scene%rows, to%lambda, n))
+      call record_span(scene%ledger, scene%system, from%motion, to%motion, from%force, to%force)
       scene%impulse = scene%impulse &
             + (to%motion%t - from%motion%t)*(from%lambda + to%lambda)/2.0_wp
+      if (.not. any(scene%rows%friction > 0.0_wp)) return
+      slip = slip_increments(scene%rows, from%motion, to%motion)
+      call record_friction(scene%ledger, -dot_product(slip, from%tau + to%tau)/2.0_wp)
+      where (to%lambda > 0.0_wp) to%slip = to%slip + abs(slip)
    end subroutine accept_span
 
    !> Speed below which a rebound is captured, by rows: the deck's, or such that all the bounces

@@ -3,7 +3,7 @@
 module impact_time
    use kinds, only: wp
    use errors, only: error_type
-   use constraint_rows, only: row_gaps, row_rates, row_accelerations
+   use constraint_rows, only: row_gaps, row_rates, row_accelerations, may_hit
    use impact_scene, only: scene_type, contact_motion_type
    use constrained_step, only: advance_smoothly
    use gap_path, only: path_type, new_path, path_value, find_dip, find_rise
@@ -52,6 +52,7 @@ contains
       type(hits_type), intent(out) :: hits
       type(error_type), allocatable, intent(out) :: error
       real(wp), dimension(scene%rows%n) :: g0, r0, a0, g1
+      logical :: free(scene%rows%n)
       type(path_type) :: path
       real(wp) :: bracket(2)
       integer :: i
@@ -61,8 +62,9 @@ contains
       r0 = row_rates(scene%rows, from%motion)
       a0 = row_accelerations(scene%rows, from%motion%a)
       g1 = row_gaps(scene%rows, to%motion)
+      free = may_hit(scene%rows) .and. .not. from%touching
       do i = 1, scene%rows%n
-         if (from%touching(i)) cycle
+         if (.not. free(i)) cycle
          path = new_path(span%dt, g0(i), r0(i), a0(i), g1(i))
          call bracket_hit(scene, from, span, i, path, bracket, error)
          if (allocated(error)) return
@@ -157,13 +159,15 @@ contains
       type(hits_type), intent(inout) :: hits
       type(error_type), allocatable, intent(out) :: error
       real(wp), dimension(scene%rows%n) :: g0, gaps
+      logical :: free(scene%rows%n)
       real(wp) :: bracket(2)
       integer :: i
 
+      free = may_hit(scene%rows) .and. .not. from%touching
       g0 = row_gaps(scene%rows, from%motion)
       gaps = row_gaps(scene%rows, at%motion)
       do i = 1, scene%rows%n
-         if (from%touching(i) .or. any(hits%row(:hits%n) == i)) cycle
+         if (.not. free(i) .or. any(hits%row(:hits%n) == i)) cycle
          if (gaps(i) >= min(g0(i), 0.0_wp) - 2.0_wp*span%gap_limit) cycle
          bracket = [0.0_wp, tau]
          if (g0(i) <= span%gap_limit) then

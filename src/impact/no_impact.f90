@@ -4,7 +4,7 @@ module no_impact
    use errors, only: error_type
    use impact_scene, only: scene_type, contact_motion_type, accept_span
    use impact_method, only: impact_method_type
-   use impact_jump, only: restart_acceleration
+   use contact_impulses, only: restart_acceleration
    use constrained_step, only: advance_smoothly
    implicit none
    private

@@ -6,7 +6,7 @@ module overlap_force
    use complementarity, only: solve_complementarity, solve_equality
    use constraint_rows, only: row_gaps, row_accelerations, gap_size
    use impact_scene, only: scene_type, contact_motion_type, gap_tolerance
-   use row_compliance, only: find_compliance
+   use row_compliance, only: compliance_type, find_compliance
    implicit none
    private
 
@@ -39,7 +39,7 @@ contains
       real(wp), allocatable :: lambda(:)
       real(wp) :: limit
 
-      eligible = .not. to%touching .and. .not. to%leaving
+      eligible = scene%rows%facing .and. .not. (to%touching .or. to%leaving)
       free_gaps = row_gaps(scene%rows, to%motion) + beta_dt2*row_accelerations(scene%rows, delta)
       limit = gap_tolerance*gap_size(scene%rows, to%motion, 0.0_wp)
       gaps = free_gaps
@@ -67,7 +67,7 @@ contains
       logical, intent(in) :: overlapping(:)
       type(overlap_type), intent(out) :: overlap
       type(error_type), allocatable, intent(out) :: error
-      real(wp), allocatable :: w(:, :), x(:, :)
+      type(compliance_type) :: all
       integer :: i, j, n, m
       logical :: solved
 
@@ -75,17 +75,19 @@ contains
       overlap%held = pack([(i, i=1, scene%rows%n)], to%touching .and. to%lambda > 0.0_wp)
       n = size(overlap%rows)
       m = size(overlap%held)
-      call find_compliance(scene, [overlap%rows, overlap%held], w, x)
+      call find_compliance(scene, [overlap%rows, overlap%held], all)
       allocate (overlap%yield(m, n))
-      do j = 1, n
-         call solve_equality(w(n + 1:, n + 1:), w(n + 1:, j), overlap%yield(:, j), solved)
-         if (.not. solved) then
-            call no_compliance(error)
-            return
-         end if
-      end do
-      overlap%x = x(:, :n) + matmul(x(:, n + 1:), overlap%yield)
-      overlap%w = beta_dt2*(w(:n, :n) + matmul(w(:n, n + 1:), overlap%yield))
+      associate (w => all%w, x => all%x)
+         do j = 1, n
+            call solve_equality(w(n + 1:, n + 1:), w(n + 1:, j), overlap%yield(:, j), solved)
+            if (.not. solved) then
+               call no_compliance(error)
+               return
+            end if
+         end do
+         overlap%x = x(:, :n) + matmul(x(:, n + 1:), overlap%yield)
+         overlap%w = beta_dt2*(w(:n, :n) + matmul(w(:n, n + 1:), overlap%yield))
+      end associate
    end subroutine find_overlap
 
    !> The fixed point of the iteration, by iterating, or directly from

@@ -5,16 +5,17 @@ module transformation
    use kinds, only: wp
    use errors, only: error_type
    use surfaces, only: beta_given
-   use constraint_rows, only: row_gaps, row_rates, row_accelerations, gap_size, rate_size, &
-         acceleration_size
+   use constraint_rows, only: row_gaps, row_rates, row_accelerations, row_curvature, gap_size, &
+         rate_size, acceleration_size, may_hit
    use impact_scene, only: scene_type, contact_motion_type, event_type, record_event, accept_span, &
          event_release, gap_tolerance, merge_gap_tolerance, rate_tolerance, &
          acceleration_tolerance, merge_time_tolerance
    use impact_method, only: impact_method_type
    use constrained_step, only: advance_smoothly
    use impact_time, only: span_type, hits_type, find_hits, locate_impact, add_missed_hits
-   use impact_jump, only: impact_type, apply_impact, restart_acceleration, project_touching, &
-         follow_wall
+   use impact_jump, only: impact_type, apply_impact
+   use contact_impulses, only: restart_acceleration, project_touching, follow_wall
+   use row_following, only: rows_ahead, rows_here, settle_rows
    use first_contacts, only: find_first_contacts
    implicit none
    private
@@ -86,6 +87,7 @@ contains
       progress%t_end = motion%motion%t + dt
       progress%remaining = dt
       progress%beta = scene%system%newmark%beta
+      call rows_ahead(scene, motion, dt)
       do while (progress%remaining > time_tolerance*dt)
          progress%at_limit = progress%n_events >= scene%settings%max_events
          call smooth_span(scene, motion, progress, span, next, release, error)
@@ -106,6 +108,7 @@ contains
          end if
       end do
       motion%motion%t = progress%t_end
+      call settle_rows(scene, motion, dt, error)
    end subroutine advance
 
    !> Takes a span of smooth motion. Rows that opened in it touch no more; the others are put back
@@ -120,18 +123,22 @@ contains
       type(progress_type), intent(inout) :: progress
       type(error_type), allocatable, intent(out) :: error
       real(wp) :: span_impulse(scene%rows%n)
-      logical :: thrown(scene%rows%n)
+      logical, dimension(scene%rows%n) :: thrown, stuck
+      type(contact_motion_type) :: reached
 
       progress%remaining = progress%remaining - dt
       span_impulse = dt*(motion%lambda + next%lambda)/2.0_wp
-      call accept_span(scene, motion, next)
-      motion = next
+      reached = next
+      call accept_span(scene, motion, reached)
+      stuck = reached%sticking .and. .not. motion%sticking .and. may_hit(scene%rows)
+      motion = reached
       motion%touching = next%touching .and. span%held
       motion%fresh = .false.
       call follow_wall(scene, motion, span_impulse, progress%dt, thrown, error)
       if (allocated(error)) return
-      if (any(thrown)) then
-         call release_rows(scene, motion, thrown, progress)
+      if (any(thrown)) call release_rows(scene, motion, thrown, progress)
+      if (any(thrown .or. (stuck .and. motion%touching))) then
+         ! a row that has come to stick has no slip acceleration any more
          call restart_acceleration(scene, motion, error)
          if (allocated(error)) return
          motion%fresh = .true.
@@ -161,7 +168,8 @@ contains
       call advance_smoothly(scene, motion, span%dt, span%beta, next, error)
       if (allocated(error) .or. .not. any(motion%touching)) return
       opening = motion%touching .and. .not. next%lambda > 0.0_wp .and. &
-            row_accelerations(scene%rows, next%motion%a) > acceleration_tolerance &
+            row_accelerations(scene%rows, next%motion%a) &
+            + row_curvature(scene%rows, next%motion) > acceleration_tolerance &
             *acceleration_size(scene%rows, next%motion%a)
       span%held = motion%touching .and. .not. opening
       if (progress%at_limit) then
@@ -333,12 +341,12 @@ contains
       impact%beta = progress%beta
       impact%plastic = progress%at_limit
       impact%rate_limit = rate_tolerance*rate_size(scene%rows, motion%motion)
-      impact%new = .not. motion%touching .and. rates < -impact%rate_limit .and. &
+      impact%new = may_hit(scene%rows) .and. .not. motion%touching .and. rates < -impact%rate_limit .and. &
             (gaps <= span%gap_limit*(merge_gap_tolerance/gap_tolerance) .or. &
             gaps <= -merge_time_tolerance*progress%dt*rates)
       ! an impact elsewhere may push a row at the wall; without a rebound of its own it answers at
       ! once
-      impact%near = .not. motion%touching .and. .not. impact%new .and. &
+      impact%near = may_hit(scene%rows) .and. .not. motion%touching .and. .not. impact%new .and. &
             .not. scene%rows%restitution > 0.0_wp .and. &
             gaps <= span%gap_limit*(merge_gap_tolerance/gap_tolerance)
       allocate (impact%forced(scene%rows%n))
@@ -364,6 +372,7 @@ contains
       real(wp), intent(in) :: dt
       type(error_type), allocatable, intent(out) :: error
 
+      call rows_here(scene, motion, dt)
       call find_first_contacts(scene, motion, dt, impact_beta(scene, dt), error)
    end subroutine start
 

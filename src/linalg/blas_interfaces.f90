@@ -4,7 +4,7 @@ module blas_interfaces
    implicit none
    private
 
-   public :: ddot, daxpy, dposv, dsygv
+   public :: ddot, daxpy, dgesv, dposv, dsygv
 
    interface
       pure function ddot(n, x, incx, y, incy) result(dot)
@@ -22,6 +22,14 @@ module blas_interfaces
          real(wp), intent(in) :: alpha, x(*)
          real(wp), intent(inout) :: y(*)
       end subroutine daxpy
+
+      pure subroutine dgesv(n, nrhs, a, lda, pivots, b, ldb, info)
+         import :: wp
+         implicit none
+         integer, intent(in) :: n, nrhs, lda, ldb
+         real(wp), intent(inout) :: a(lda, *), b(ldb, *)
+         integer, intent(out) :: pivots(*), info
+      end subroutine dgesv
 
       pure subroutine dposv(uplo, n, nrhs, a, lda, b, ldb, info)
          import :: wp

@@ -26,7 +26,7 @@ module surfaces
    type :: surface_type
       character(len=name_length) :: name = ''
       integer, allocatable :: nodes(:)           !! node indices, ascending, each once
-      integer, allocatable :: edges(:, :)        !! (3, n) nodes: the ends, the middle one or 0;
+      integer, allocatable :: edges(:, :)        !! (3, n) nodes: ends, then the middle one or 0;
                                                  !! of no size for TYPE=NODE
       integer, allocatable :: edge_element(:)    !! (n) element index of each edge
       type(place_type) :: place

@@ -3,7 +3,7 @@ module snapshot
    use kinds, only: wp
    use element_interface, only: n_recovered
    use reactions, only: reaction_forces
-   use constraint_rows, only: row_forces, row_gaps
+   use constraint_rows, only: row_gaps
    use impact_scene, only: scene_type, contact_motion_type
    implicit none
    private
@@ -15,7 +15,7 @@ module snapshot
       real(wp) :: time = 0.0_wp
       real(wp), allocatable :: u(:), v(:), a(:), rf(:), cf(:)   !! (n_freedoms)
       real(wp), allocatable :: history(:)                       !! (n_history)
-      real(wp), allocatable :: lambda(:), gap(:), impulse(:)    !! (n_rows)
+      real(wp), allocatable :: lambda(:), tau(:), gap(:), impulse(:)   !! (n_rows)
    end type snapshot_type
 
 contains
@@ -35,7 +35,8 @@ contains
       self%lambda = motion%lambda
       self%gap = row_gaps(scene%rows, motion%motion)
       self%impulse = scene%impulse
-      self%cf = row_forces(scene%rows, motion%lambda, size(self%u))
+      self%cf = motion%force
+      self%tau = motion%tau
       self%rf = 0.0_wp*self%u
       if (with_reactions) self%rf = reaction_forces(scene%system, motion%motion, self%cf)
    end subroutine take_snapshot

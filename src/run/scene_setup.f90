@@ -16,7 +16,9 @@ module scene_setup
    use equation_of_motion, only: system_type, impose
    use critical_step, only: critical_type, find_critical
    use contact_pairs, only: contact_pair_list_type, find_contact_rows
-   use constraint_rows, only: new_rows, row_gaps, gap_size
+   use contact_geometry, only: new_contact_geometry
+   use constraint_rows, only: row_gaps, gap_size
+   use row_placement, only: new_rows, place_rows
    use impact_scene, only: scene_type, contact_motion_type, new_contact_motion, merge_gap_tolerance
    use impact_method, only: impact_method_type
    use automatic_groups, only: partition_type, resolve_automatic
@@ -58,7 +60,8 @@ contains
       self%deck_scheme = self%scene%system%structure%groups%scheme
       call find_contact_rows(self%model, self%contact, error)
       if (allocated(error)) return
-      call new_rows(self%scene%rows, self%contact, self%model, self%scene%system%structure, error)
+      call new_contact_geometry(self%scene%geometry, self%model, self%contact)
+      call new_rows(self%scene%rows, self%scene%geometry, self%contact, self%model, self%scene%system%structure, error)
       if (allocated(error)) return
       call make_impact_method(self%model, self%contact, self%method, self%scene%settings, error)
       if (allocated(error)) return
@@ -155,6 +158,8 @@ contains
          call put_values(structure, self%model%initial_velocities, self%motion%motion%v)
       end associate
       if (self%scene%rows%n == 0) return
+      call place_rows(self%scene%rows, self%scene%geometry, self%scene%system%structure%map, &
+            self%motion%motion, self%motion%motion, huge(1.0_wp))
       gaps = row_gaps(self%scene%rows, self%motion%motion)
       i = minloc(gaps, dim=1)
       if (gaps(i) >= -merge_gap_tolerance*gap_size(self%scene%rows, self%motion%motion, &

@@ -4,7 +4,7 @@ module step_start
    use errors, only: error_type
    use external_load, only: load_at
    use energy_ledger, only: open_ledger, close_increment
-   use impact_jump, only: restart_acceleration
+   use contact_impulses, only: restart_acceleration
    use scene_setup, only: simulation_type, begin_step
    implicit none
    private

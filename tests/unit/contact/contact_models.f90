@@ -45,6 +45,7 @@ contains
       surfaces(:n) = model%surfaces
       surfaces(n + 1)%name = 'S'//achar(iachar('1') + n)
       surfaces(n + 1)%nodes = nodes
+      allocate (surfaces(n + 1)%edges(3, 0), surfaces(n + 1)%edge_element(0))
       call move_alloc(surfaces, model%surfaces)
       plane%name = 'W'//achar(iachar('1') + n)
       plane%point = point

@@ -3,7 +3,9 @@ module small_scenes
    use kinds, only: wp
    use contact_models, only: add_interaction
    use contact_pairs, only: contact_pair_list_type, find_contact_rows
-   use constraint_rows, only: new_rows, row_vector
+   use contact_geometry, only: new_contact_geometry
+   use constraint_rows, only: row_vector
+   use row_placement, only: new_rows
    use energy_ledger, only: open_ledger
    use errors, only: error_type
    use impact_factory, only: make_impact_method
@@ -38,7 +40,8 @@ contains
       if (allocated(error)) return
       call start_system(scene%system, motion%motion, model, error)
       if (allocated(error)) return
-      call new_rows(scene%rows, list, model, scene%system%structure, error)
+      call new_contact_geometry(scene%geometry, model, list)
+      call new_rows(scene%rows, scene%geometry, list, model, scene%system%structure, error)
       if (allocated(error)) return
       call make_impact_method(model, list, made, scene%settings, error)
       if (allocated(error)) return

@@ -2,24 +2,12 @@
 !> solution and eigenvalues.
 module dense_matrices
    use kinds, only: wp
-   use blas_interfaces, only: dsygv
+   use blas_interfaces, only: dgesv, dsygv
    use skyline_matrix, only: skyline_type
    implicit none
    private
 
    public :: as_dense, factors_product, dense_solution, eigenvalues
-
-   interface
-      ! LAPACK takes arrays by address, without their size
-      ! allow(C071)
-      subroutine dgesv(n, nrhs, a, lda, pivots, b, ldb, info)
-         import :: wp
-         implicit none
-         integer, intent(in) :: n, nrhs, lda, ldb
-         real(wp), intent(inout) :: a(lda, *), b(ldb, *)
-         integer, intent(out) :: pivots(*), info
-      end subroutine dgesv
-   end interface
 
 contains
 

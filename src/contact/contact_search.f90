@@ -1,0 +1,362 @@
+!> The partner of a node on a surface: the edge, the point X on it and the normal n with which the
+!> gap is n . (x - X).
+!>
+!> Between the ends of an edge X is the closest point and n the outward normal there. At a vertex
+!> between two edges, where the closest point is the vertex itself, n points along the line between
+!> vertex and node, away from the body: the gap is plus or minus their distance and turns with the
+!> node continuously from one edge to the other. For a node that touches a vertex, closer than 1e-6
+!> of the edge's length, n is the mean of both normals where the edges differ by less than 45
+!> degrees, else that of the edge that faces the node better or, with no difference, on whose side
+!> it is. At an open end of a surface n stays that of the edge, and a node beyond the end by more
+!> than the target's overhang has no partner there.
+module contact_search
+   use kinds, only: int64, wp
+   use topology, only: line_derivatives, line_functions
+   use segment_projection, only: closest_on_edge, cut_edge, edge_frame
+   use target_surface, only: edge_coordinates, edges_near, target_type
+   implicit none
+   private
+
+   public :: partner_type, find_partner
+
+   !> Overlaps up to this share of an edge's length are recognised without a path across the edge.
+   real(wp), parameter :: overlap_share = 0.5_wp
+   !> A node closer to a vertex than this share of the edge's length touches it.
+   real(wp), parameter :: touch_share = 1.0e-6_wp
+   !> Cosine of the largest angle between two edges that a mean normal is taken for.
+   real(wp), parameter :: kink_limit = 0.7_wp
+   !> A surface whose normal has a larger component along the node's than this is its rear.
+   real(wp), parameter :: facing_limit = 0.1_wp
+
+   type :: partner_type
+      integer :: edge = 0                        !! of the target, 0: none
+      real(wp) :: s = 0.0_wp                     !! place on the edge, -1 to 1
+      logical :: at_vertex = .false.             !! X is a vertex and n not the normal of an edge
+      real(wp) :: gap = 0.0_wp                   !! n . (x - X)
+      real(wp) :: normal(2) = 0.0_wp             !! n, outward of the target
+      real(wp) :: tangent(2) = 0.0_wp            !! (-n_y, n_x)
+      real(wp) :: stretch = 0.0_wp               !! J = |dX/ds|
+      real(wp) :: bend = 0.0_wp                  !! n . X''/J^2, negative for a convex target
+      integer :: n_nodes = 0
+      integer :: nodes(3) = 0                    !! of the edge
+      real(wp) :: shape(3) = 0.0_wp              !! N_p(s)
+      real(wp) :: slope(3) = 0.0_wp              !! dN_p/ds / J
+   end type partner_type
+
+   !> What is looked for.
+   type :: query_type
+      integer :: node = 0
+      real(wp) :: before(2) = 0.0_wp, now(2) = 0.0_wp
+      real(wp) :: facing(2) = 0.0_wp             !! outward normal at the node, or zero
+      real(wp) :: limit = facing_limit           !! of the partner's normal along it
+      real(wp) :: reach = 0.0_wp
+   end type query_type
+
+contains
+
+   !> Finds the partner of a node: where its path relative to the edges crosses one from its outer
+   !> to its inner side, the first edge crossed, or one near it that is closer at the end; else the
+   !> closest edge, when the gap is less than the reach and an overlap not more than twice the
+   !> relative motion or half the length of the edge. Edges with this node are never partners. The
+   !> target must have been updated with the same positions.
+   pure subroutine find_partner(self, x_before, x_now, node, reach, allowed_normal, partner)
+      type(target_type), intent(inout) :: self
+      real(wp), intent(in) :: x_before(:, :), x_now(:, :) !! (2 or 3, n_nodes) at the step's ends
+      integer, intent(in) :: node
+      real(wp), intent(in) :: reach
+      real(wp), intent(in) :: allowed_normal(2)  !! outward at the node, or zero if unknown
+      type(partner_type), intent(out) :: partner !! edge 0 if there is none
+      type(query_type) :: query
+      type(partner_type) :: trial
+      integer :: i, crossed
+      real(wp) :: path(2), least, distance, first, fraction
+
+      query = query_type(node=node, before=x_before(1:2, node), now=x_now(1:2, node), &
+            facing=allowed_normal, reach=reach)
+      call look_at_own_edges(self, x_now, query)
+      path = query%now - query%before - self%motion
+      call edges_near(self, min(query%now, query%now - path), max(query%now, query%now - path), &
+            max(reach, 2.0_wp*(norm2(path) + self%unrest)), 1.5_wp*overlap_share)
+      least = huge(1.0_wp)
+      first = huge(1.0_wp)
+      crossed = 0
+      do i = 1, self%n_found
+         if (any(self%edges(:, self%found(i)) == node)) cycle
+         self%n_tests = self%n_tests + 1
+         call compare(self, x_before, x_now, query, self%found(i), trial, distance, fraction)
+         if (fraction < first) then
+            first = fraction
+            crossed = self%found(i)
+         end if
+         if (trial%edge == 0 .or. distance >= least) cycle
+         least = distance
+         partner = trial
+      end do
+      if (crossed == 0) return
+      if (cuts_corner(self, x_now, crossed, partner, norm2(path) + self%unrest)) return
+      call project_along(self, x_now, query, crossed, trial)
+      if (trial%edge > 0) partner = trial
+   end subroutine find_partner
+
+   !> True if the closest point is so near along the surface to the edge that was crossed that the
+   !> node has only cut the corner between them: no further than four times its path.
+   pure function cuts_corner(self, x_now, crossed, partner, path) result(cuts)
+      type(target_type), intent(in) :: self
+      real(wp), intent(in) :: x_now(:, :)
+      integer, intent(in) :: crossed
+      type(partner_type), intent(in) :: partner
+      real(wp), intent(in) :: path               !! length
+      logical :: cuts
+      integer :: after, before, i
+      real(wp) :: ahead, behind
+
+      cuts = .false.
+      if (partner%edge == 0) return
+      after = partner%edge
+      before = partner%edge
+      ahead = partner%stretch*(1.0_wp - partner%s)
+      behind = partner%stretch*(1.0_wp + partner%s)
+      do i = 1, size(self%next)
+         cuts = after == crossed .or. before == crossed
+         if (cuts) return
+         if (ahead > 4.0_wp*path) after = 0
+         if (behind > 4.0_wp*path) before = 0
+         if (after > 0) after = self%next(after)
+         if (before > 0) before = self%previous(before)
+         if (after + before == 0) return
+         if (after > 0) ahead = ahead + edge_chord(self, x_now, after)
+         if (before > 0) behind = behind + edge_chord(self, x_now, before)
+      end do
+   end function cuts_corner
+
+   pure function edge_chord(self, x_now, edge) result(length)
+      type(target_type), intent(in) :: self
+      real(wp), intent(in) :: x_now(:, :)
+      integer, intent(in) :: edge
+      real(wp) :: length
+
+      length = norm2(x_now(1:2, self%edges(2, edge)) - x_now(1:2, self%edges(1, edge)))
+   end function edge_chord
+
+   !> A node of the target itself looks away from its own edges.
+   pure subroutine look_at_own_edges(self, x_now, query)
+      type(target_type), intent(in) :: self
+      real(wp), intent(in) :: x_now(:, :)
+      type(query_type), intent(inout) :: query
+      real(wp) :: total(2)
+
+      if (self%leaving(query%node) + self%arriving(query%node) == 0) return
+      query%limit = -facing_limit
+      if (any(abs(query%facing) > 0.0_wp)) return
+      total = own_normal(self, x_now, self%leaving(query%node), query%node) &
+            + own_normal(self, x_now, self%arriving(query%node), query%node)
+      if (norm2(total) > facing_limit) query%facing = total/norm2(total)
+   end subroutine look_at_own_edges
+
+   pure function own_normal(self, x_now, edge, node) result(normal)
+      type(target_type), intent(in) :: self
+      real(wp), intent(in) :: x_now(:, :)
+      integer, intent(in) :: edge, node
+      real(wp) :: normal(2)
+      real(wp) :: x(2, 3), point(2), tangent(2), stretch, bend, s
+
+      normal = 0.0_wp
+      if (edge == 0) return
+      s = 0.0_wp
+      if (self%edges(1, edge) == node) s = -1.0_wp
+      if (self%edges(2, edge) == node) s = 1.0_wp
+      x = edge_coordinates(self, edge, x_now)
+      call edge_frame(x(:, :self%n_edge_nodes(edge)), s, point, tangent, normal, stretch, bend)
+   end function own_normal
+
+   !> One edge: the partner that it would be by its closest point, with edge 0 if it is none, and
+   !> the fraction of the step after which the node crosses it, huge if it does not.
+   pure subroutine compare(self, x_before, x_now, query, edge, trial, distance, fraction)
+      type(target_type), intent(in) :: self
+      real(wp), intent(in) :: x_before(:, :), x_now(:, :)
+      type(query_type), intent(in) :: query
+      integer, intent(in) :: edge
+      type(partner_type), intent(out) :: trial
+      real(wp), intent(out) :: distance, fraction
+      integer :: n
+      real(wp) :: x(2, 3), change(2, 3), s, s_free, path(2)
+
+      fraction = huge(1.0_wp)
+      n = self%n_edge_nodes(edge)
+      x = edge_coordinates(self, edge, x_now)
+      change = x - edge_coordinates(self, edge, x_before)
+      call closest_on_edge(x(:, :n), query%now, s, s_free)
+      distance = norm2(query%now - matmul(x(:, :n), line_functions(n, s)))
+      path = query%now - query%before - matmul(change(:, :n), line_functions(n, s))
+      if (distance <= norm2(path) + self%unrest) then
+         call cross_edge(x(:, :n), change(:, :n), query, s, fraction)
+      end if
+      if (distance > max(query%reach, 2.0_wp*norm2(path), 4.0_wp*overlap_share &
+            *maxval(abs(x(:, 2) - x(:, 1))))) return
+      call make_partner(self, x_now, query, edge, s, s_free, trial)
+      if (trial%edge == 0) return
+      if (trial%gap > query%reach) trial%edge = 0
+      if (-trial%gap > max(2.0_wp*norm2(path), 2.0_wp*overlap_share*trial%stretch)) trial%edge = 0
+   end subroutine compare
+
+   !> The fraction of the step after which a node crosses an edge inward, both moving straight; the
+   !> path is that relative to the point of the edge where it crosses.
+   pure subroutine cross_edge(x, change, query, s_end, fraction)
+      real(wp), intent(in) :: x(:, :), change(:, :) !! edge now, and its displacements in the step
+      type(query_type), intent(in) :: query
+      real(wp), intent(in) :: s_end              !! closest point at the end of the step
+      real(wp), intent(out) :: fraction
+      integer :: round
+      logical :: found
+      real(wp) :: s, start(2), when, point(2), tangent(2), normal(2), stretch, bend
+
+      fraction = huge(1.0_wp)
+      s = s_end
+      do round = 1, 3
+         start = query%before + matmul(change, line_functions(size(x, 2), s))
+         call cut_edge(x, start, query%now, s, when, found)
+         if (.not. found) return
+      end do
+      call edge_frame(x, s, point, tangent, normal, stretch, bend)
+      if (dot_product(normal, query%now - start) >= 0.0_wp) return
+      if (dot_product(normal, query%facing) > query%limit) return
+      fraction = when
+   end subroutine cross_edge
+
+   !> The partner on an edge that was crossed, or on those that follow it when they are closer.
+   pure subroutine project_along(self, x_now, query, crossed, partner)
+      type(target_type), intent(in) :: self
+      real(wp), intent(in) :: x_now(:, :)
+      type(query_type), intent(in) :: query
+      integer, intent(in) :: crossed
+      type(partner_type), intent(out) :: partner
+      integer :: step, edge, other
+      real(wp) :: s, s_free, distance, s_other, s_free_other, distance_other
+
+      edge = crossed
+      call project(self, x_now, query, edge, s, s_free, distance)
+      do step = 1, size(self%next)
+         if (abs(s_free) <= 1.0_wp) exit
+         other = neighbour_of(self, query, edge, s_free)
+         if (other == 0) exit
+         call project(self, x_now, query, other, s_other, s_free_other, distance_other)
+         if (distance_other >= distance) exit
+         edge = other
+         s = s_other
+         s_free = s_free_other
+         distance = distance_other
+      end do
+      call make_partner(self, x_now, query, edge, s, s_free, partner)
+   end subroutine project_along
+
+   pure subroutine project(self, x_now, query, edge, s, s_free, distance)
+      type(target_type), intent(in) :: self
+      real(wp), intent(in) :: x_now(:, :)
+      type(query_type), intent(in) :: query
+      integer, intent(in) :: edge
+      real(wp), intent(out) :: s, s_free, distance
+      real(wp) :: x(2, 3)
+
+      x = edge_coordinates(self, edge, x_now)
+      associate (n => self%n_edge_nodes(edge))
+         call closest_on_edge(x(:, :n), query%now, s, s_free)
+         distance = norm2(query%now - matmul(x(:, :n), line_functions(n, s)))
+      end associate
+   end subroutine project
+
+   !> The edge beyond the end that s is nearest to; 0 at an open end or if the node belongs to it.
+   pure function neighbour_of(self, query, edge, s) result(other)
+      type(target_type), intent(in) :: self
+      type(query_type), intent(in) :: query
+      integer, intent(in) :: edge
+      real(wp), intent(in) :: s
+      integer :: other
+
+      other = merge(self%next(edge), self%previous(edge), s > 0.0_wp)
+      if (other == 0) return
+      if (any(self%edges(:, other) == query%node)) other = 0
+   end function neighbour_of
+
+   !> Gap and normal at a place of an edge by the rules above; edge 0 beyond an open end or where
+   !> the surface does not face the node.
+   pure subroutine make_partner(self, x_now, query, edge, s, s_free, partner)
+      type(target_type), intent(in) :: self
+      real(wp), intent(in) :: x_now(:, :)
+      type(query_type), intent(in) :: query
+      integer, intent(in) :: edge
+      real(wp), intent(in) :: s, s_free
+      type(partner_type), intent(out) :: partner
+      integer :: other
+      real(wp) :: offset(2), distance
+
+      partner%edge = edge
+      partner%s = s
+      call set_frame(self, x_now, query, partner, offset)
+      distance = partner%stretch*(1.0_wp - abs(s)) + norm2(offset)
+      if (distance <= 2.0_wp*touch_share*partner%stretch .or. abs(s_free) > 1.0_wp) then
+         other = neighbour_of(self, query, edge, s)
+         if (other > 0) call turn_normal(self, x_now, query, other, partner, offset)
+         if (other == 0 .and. abs(s_free) > 1.0_wp + 2.0_wp*self%overhang) partner%edge = 0
+      end if
+      partner%gap = dot_product(partner%normal, offset)
+      partner%tangent = [-partner%normal(2), partner%normal(1)]
+      if (dot_product(partner%normal, query%facing) > query%limit) partner%edge = 0
+   end subroutine make_partner
+
+   !> All that belongs to partner%edge and partner%s but the gap.
+   pure subroutine set_frame(self, x_now, query, partner, offset)
+      type(target_type), intent(in) :: self
+      real(wp), intent(in) :: x_now(:, :)
+      type(query_type), intent(in) :: query
+      type(partner_type), intent(inout) :: partner
+      real(wp), intent(out) :: offset(2)         !! x - X
+      real(wp) :: x(2, 3), point(2)
+
+      x = edge_coordinates(self, partner%edge, x_now)
+      associate (n => self%n_edge_nodes(partner%edge))
+         partner%n_nodes = n
+         partner%nodes = self%edges(:, partner%edge)
+         partner%shape = 0.0_wp
+         partner%slope = 0.0_wp
+         partner%shape(:n) = line_functions(n, partner%s)
+         call edge_frame(x(:, :n), partner%s, point, partner%tangent, partner%normal, &
+               partner%stretch, partner%bend)
+         partner%slope(:n) = line_derivatives(n, partner%s)/partner%stretch
+      end associate
+      offset = query%now - point
+   end subroutine set_frame
+
+   !> The normal at a vertex: between the node and the vertex when they are apart, else the mean of
+   !> both edges' or that of one.
+   pure subroutine turn_normal(self, x_now, query, other, partner, offset)
+      type(target_type), intent(in) :: self
+      real(wp), intent(in) :: x_now(:, :)
+      type(query_type), intent(in) :: query
+      integer, intent(in) :: other               !! edge on the other side of the vertex
+      type(partner_type), intent(inout) :: partner
+      real(wp), intent(inout) :: offset(2)
+      type(partner_type) :: beyond
+      real(wp) :: own, across, facing, offset_beyond(2)
+
+      beyond%edge = other
+      beyond%s = sign(1.0_wp, -partner%s)
+      call set_frame(self, x_now, query, beyond, offset_beyond)
+      own = dot_product(partner%normal, offset)
+      across = dot_product(beyond%normal, offset)
+      if (norm2(offset) > 2.0_wp*touch_share*partner%stretch) then
+         partner%at_vertex = .true.
+         partner%normal = sign(1.0_wp, own + across)*offset/norm2(offset)
+      else if (dot_product(partner%normal, beyond%normal) > kink_limit) then
+         partner%normal = partner%normal + beyond%normal
+         partner%normal = partner%normal/norm2(partner%normal)
+      else
+         ! The own normal decides, for round-off must not move a node round a corner.
+         facing = dot_product(beyond%normal - partner%normal, query%facing)
+         if (abs(facing) <= facing_limit) facing = own - across
+         if (facing >= 0.0_wp .or. abs(partner%s) < 1.0_wp) return
+         partner = beyond
+         offset = offset_beyond
+      end if
+   end subroutine turn_normal
+
+end module contact_search

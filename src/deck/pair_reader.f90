@@ -1,0 +1,294 @@
+!> `*CONTACT PAIR`: which surface may touch which, and how that is looked at.
+module pair_reader
+   use kinds, only: wp
+   use errors, only: error_type
+   use places, only: fail_at, line_text
+   use properties, only: name_length
+   use surfaces, only: contact_pair_type
+   use model, only: model_type
+   use model_building, only: find_named
+   use cards, only: deck_type, card_type, get_word, get_name_parameter, get_real_parameter
+   use cards, only: has_parameter, parameter_index, parameter_place
+   use fields, only: fields_type, split_line, check_count, field_place, get_name
+   use words, only: word_length, advice
+   implicit none
+   private
+
+   public :: read_pairs
+
+contains
+
+   !> One pair a data line; then what pairs mean beside each other.
+   subroutine read_pairs(model, deck, error)
+      type(model_type), intent(inout) :: model
+      type(deck_type), intent(in) :: deck
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i, n
+
+      n = 0
+      do i = 1, deck%n_cards
+         if (deck%cards(i)%keyword == 'CONTACTPAIR') then
+            n = n + deck%cards(i)%last - deck%cards(i)%first + 1
+         end if
+      end do
+      allocate (model%pairs(n))
+      n = 0
+      do i = 1, deck%n_cards
+         if (deck%cards(i)%keyword /= 'CONTACTPAIR') cycle
+         call read_pair_card(model, n, deck, deck%cards(i), error)
+         if (allocated(error)) return
+      end do
+      call check_masses(model, error)
+   end subroutine read_pairs
+
+   subroutine read_pair_card(model, n, deck, card, error)
+      type(model_type), intent(inout) :: model
+      integer, intent(inout) :: n   !! pairs so far
+      type(deck_type), intent(in) :: deck
+      type(card_type), intent(in) :: card
+      type(error_type), allocatable, intent(out) :: error
+      type(fields_type) :: fields
+      type(contact_pair_type) :: pair
+      integer :: line
+
+      call read_options(pair, model, card, error)
+      if (allocated(error)) return
+      do line = card%first, card%last
+         call split_line(fields, deck, card, line, model%source, error)
+         if (allocated(error)) return
+         pair%place = fields%place
+         call read_slave(pair, model, fields, error)
+         if (allocated(error)) return
+         call read_master(pair, model, fields, error)
+         if (allocated(error)) return
+         call check_pair(pair, model, fields, error)
+         if (allocated(error)) return
+         call check_pair_is_new(pair, model, n, fields, error)
+         if (allocated(error)) return
+         n = n + 1
+         model%pairs(n) = pair
+      end do
+   end subroutine read_pair_card
+
+   !> The parameters of the card, which hold for all of its pairs.
+   subroutine read_options(pair, model, card, error)
+      type(contact_pair_type), intent(inout) :: pair
+      type(model_type), intent(in) :: model
+      type(card_type), intent(in) :: card
+      type(error_type), allocatable, intent(out) :: error
+      character(len=word_length), parameter :: types(*) = [character(len=word_length) :: &
+            'NODE TO SURFACE', 'SURFACE TO SURFACE']
+      character(len=word_length), parameter :: passes(*) = [character(len=word_length) :: '1', '2']
+      character(len=word_length), parameter :: masses(*) = [character(len=word_length) :: &
+            'REDISTRIBUTED']
+      character(len=name_length) :: name
+      integer :: choice
+
+      call get_word(card, 'TYPE', types, choice, model%source, error)
+      if (allocated(error)) return
+      pair%weighted = choice == 2
+      call get_word(card, 'PASSES', passes, choice, model%source, error)
+      if (allocated(error)) return
+      pair%passes = max(1, choice)
+      call get_word(card, 'MASS', masses, choice, model%source, error)
+      if (allocated(error)) return
+      pair%redistributed = choice == 1
+      pair%small_sliding = has_parameter(card, 'SMALLSLIDING')
+      call read_adjustment(pair, model, card, error)
+      if (allocated(error)) return
+      call get_name_parameter(card, 'INTERACTION', name, model%source, error)
+      if (allocated(error)) return
+      pair%interaction = find_named(model%interactions, name)
+      if (pair%interaction == 0) call fail_at(error, model%source, &
+            parameter_place(card, 'INTERACTION'), 'no such surface interaction: '//trim(name), &
+            cure='define it with *SURFACE INTERACTION; '//advice(name, [model%interactions%name]))
+   end subroutine read_options
+
+   !> ADJUST, or ADJUST=distance.
+   subroutine read_adjustment(pair, model, card, error)
+      type(contact_pair_type), intent(inout) :: pair
+      type(model_type), intent(in) :: model
+      type(card_type), intent(in) :: card
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      i = parameter_index(card, 'ADJUST')
+      if (i == 0) return
+      pair%adjust = .true.
+      if (.not. allocated(card%parameters(i)%value)) return
+      call get_real_parameter(card, 'ADJUST', pair%adjust_distance, model%source, error)
+      if (allocated(error)) return
+      if (pair%adjust_distance < 0.0_wp) call fail_at(error, model%source, &
+            parameter_place(card, 'ADJUST'), 'the distance of ADJUST must not be negative', &
+            cure='write ADJUST alone for overlaps only, or the width of the gaps to close too')
+   end subroutine read_adjustment
+
+   subroutine read_slave(pair, model, fields, error)
+      type(contact_pair_type), intent(inout) :: pair
+      type(model_type), intent(in) :: model
+      type(fields_type), intent(in) :: fields
+      type(error_type), allocatable, intent(out) :: error
+      character(len=name_length) :: name
+
+      call check_count(fields, 2, model%source, error)
+      if (allocated(error)) return
+      call get_name(fields, 1, 'slave surface', name, model%source, error)
+      if (allocated(error)) return
+      pair%contactor = find_named(model%surfaces, name)
+      if (pair%contactor > 0) return
+      if (find_named(model%rigid_surfaces, name) > 0) then
+         call fail_at(error, model%source, field_place(fields, 1), &
+               'a rigid surface cannot be the slave', cure='write: slave, rigid surface')
+      else
+         call fail_at(error, model%source, field_place(fields, 1), 'no such surface: '// &
+               trim(name), cure='define it with *SURFACE; '//advice(name, [model%surfaces%name]))
+      end if
+   end subroutine read_slave
+
+   subroutine read_master(pair, model, fields, error)
+      type(contact_pair_type), intent(inout) :: pair
+      type(model_type), intent(in) :: model
+      type(fields_type), intent(in) :: fields
+      type(error_type), allocatable, intent(out) :: error
+      character(len=name_length) :: name
+
+      call get_name(fields, 2, 'master surface', name, model%source, error)
+      if (allocated(error)) return
+      pair%target = find_named(model%surfaces, name)
+      pair%rigid_target = find_named(model%rigid_surfaces, name)
+      if (pair%target + pair%rigid_target == 0) then
+         call fail_at(error, model%source, field_place(fields, 2), 'no such surface: '// &
+               trim(name), cure='define it with *SURFACE, TYPE=ELEMENT or with *RIGID SURFACE; '// &
+               advice(name, masters(model)))
+      else if (pair%target > 0) then
+         if (.not. has_edges(model, pair%target)) call fail_at(error, model%source, &
+               field_place(fields, 2), 'a surface of nodes cannot be the master', &
+               cure='define it with TYPE=ELEMENT, or name a *RIGID SURFACE')
+      end if
+   end subroutine read_master
+
+   !> Names of all surfaces that can be masters.
+   pure function masters(model) result(names)
+      type(model_type), intent(in) :: model
+      character(len=name_length), allocatable :: names(:)
+      logical :: able(size(model%surfaces))
+      integer :: i
+
+      do i = 1, size(able)
+         able(i) = has_edges(model, i)
+      end do
+      names = [pack(model%surfaces%name, able), model%rigid_surfaces%name]
+   end function masters
+
+   !> Whether a surface is of TYPE=ELEMENT.
+   pure function has_edges(model, surface) result(has)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: surface
+      logical :: has
+
+      has = size(model%surfaces(surface)%edges, 2) > 0
+   end function has_edges
+
+   !> What the parameters of a card ask of the surfaces of a pair.
+   subroutine check_pair(pair, model, fields, error)
+      type(contact_pair_type), intent(in) :: pair
+      type(model_type), intent(in) :: model
+      type(fields_type), intent(in) :: fields
+      type(error_type), allocatable, intent(out) :: error
+
+      call check_edges(pair, model, fields, error)
+      if (allocated(error)) return
+      if (pair%passes == 2 .and. pair%rigid_target > 0) then
+         call fail_at(error, model%source, field_place(fields, 2), &
+               'with PASSES=2 each surface is slave once, a rigid surface cannot be', &
+               cure='remove PASSES=2')
+      else if (pair%passes == 2 .and. pair%target == pair%contactor) then
+         call fail_at(error, model%source, field_place(fields, 2), &
+               'PASSES=2 means nothing for a surface against itself', &
+               cure='remove PASSES=2: every node of the surface is slave already')
+      else if (pair%adjust .and. pair%target == pair%contactor) then
+         call fail_at(error, model%source, field_place(fields, 2), &
+               'ADJUST means nothing for a surface against itself', &
+               cure='remove ADJUST, or make two surfaces of it: one stays, the other is moved')
+      end if
+   end subroutine check_pair
+
+   !> Weighted rows, two passes and redistributed masses need edges on the slave.
+   subroutine check_edges(pair, model, fields, error)
+      type(contact_pair_type), intent(in) :: pair
+      type(model_type), intent(in) :: model
+      type(fields_type), intent(in) :: fields
+      type(error_type), allocatable, intent(out) :: error
+      character(len=:), allocatable :: what
+
+      if (has_edges(model, pair%contactor)) return
+      if (pair%weighted) then
+         what = 'TYPE=SURFACE TO SURFACE'
+      else if (pair%passes == 2) then
+         what = 'PASSES=2'
+      else if (pair%redistributed) then
+         what = 'MASS=REDISTRIBUTED'
+      else
+         return
+      end if
+      call fail_at(error, model%source, field_place(fields, 1), &
+            what//' needs a slave with edges, this one is made of nodes', &
+            cure='define it with *SURFACE, TYPE=ELEMENT, or remove '//what)
+   end subroutine check_edges
+
+   !> Two surfaces make one pair.
+   subroutine check_pair_is_new(pair, model, n, fields, error)
+      type(contact_pair_type), intent(in) :: pair
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: n   !! pairs so far
+      type(fields_type), intent(in) :: fields
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      do i = 1, n
+         associate (other => model%pairs(i))
+            if (other%contactor == pair%contactor .and. other%target == pair%target .and. &
+                  other%rigid_target == pair%rigid_target) then
+               call fail_at(error, model%source, fields%place, 'this pair stands at '// &
+                     line_text(model%source, other%place)//' already', cure='keep one of the two')
+               return
+            else if (other%contactor == pair%target .and. other%target == pair%contactor) then
+               call fail_at(error, model%source, fields%place, 'this is the pair at '// &
+                     line_text(model%source, other%place)//' with its surfaces exchanged', &
+                     cure='keep one of the two, and write PASSES=2 on its card for both ways')
+               return
+            end if
+         end associate
+      end do
+   end subroutine check_pair_is_new
+
+   !> A node without mass has no rebound, in whatever pair it is the slave.
+   subroutine check_masses(model, error)
+      type(model_type), intent(in) :: model
+      type(error_type), allocatable, intent(out) :: error
+      logical, allocatable :: massless(:)
+      integer :: p
+
+      if (.not. any(model%pairs%redistributed)) return
+      allocate (massless(model%nodes%n), source=.false.)
+      do p = 1, size(model%pairs)
+         if (.not. model%pairs(p)%redistributed) cycle
+         massless(model%surfaces(model%pairs(p)%contactor)%nodes) = .true.
+         if (model%pairs(p)%target == 0) cycle
+         massless(model%surfaces(model%pairs(p)%target)%nodes) = .true.
+      end do
+      do p = 1, size(model%pairs)
+         associate (pair => model%pairs(p))
+            if (.not. model%interactions(pair%interaction)%has_restitution) cycle
+            if (.not. any(massless(model%surfaces(pair%contactor)%nodes))) cycle
+            call fail_at(error, model%source, pair%place, 'MASS=REDISTRIBUTED leaves nodes of '// &
+                  trim(model%surfaces(pair%contactor)%name)//' without mass, they cannot '// &
+                  "rebound as RESTITUTION of the interaction '"// &
+                  trim(model%interactions(pair%interaction)%name)//"' says", &
+                  cure='remove RESTITUTION from its *IMPACT, or MASS')
+            return
+         end associate
+      end do
+   end subroutine check_masses
+
+end module pair_reader

@@ -1,0 +1,229 @@
+!> Contact forces and impulses on the mass: the acceleration of equilibrium with rows held, rows put
+!> back on their partners, gap rates set.
+module contact_impulses
+   use kinds, only: wp
+   use errors, only: error_type, new_error, status_numerical
+   use complementarity, only: solve_complementarity, solve_equality
+   use equation_of_motion, only: solve_mass, force_balance
+   use structure, only: inertia_force
+   use energy_ledger, only: record_impact, record_friction
+   use constraint_rows, only: row_gaps, row_rates, row_accelerations, row_curvature, slip_rates, &
+         slip_products, rate_size, gap_size, wall_rates
+   use impact_scene, only: scene_type, contact_motion_type, note_contact_force, gap_tolerance
+   use row_compliance, only: compliance_type, mass_compliance, join_rates, split_forces
+   use rough_rows, only: solve_rows
+   implicit none
+   private
+
+   public :: restart_acceleration, hold_acceleration, project_touching, set_rates, follow_wall
+   public :: book_impulse, book_friction, dependent_impulses
+
+   !> Opening rates below this part of the speeds are round-off.
+   real(wp), parameter :: thrown_tolerance = 1.0e-9_wp
+   !> So is slip below this part of the largest speed.
+   real(wp), parameter :: rest_tolerance = 1.0e-12_wp
+   !> A friction force within this part of its limit slips.
+   real(wp), parameter :: slip_tolerance = 1.0e-9_wp
+
+contains
+
+   !> The acceleration of equilibrium with the touching rows held bilaterally: a force of either
+   !> sign.
+   !> (With its sign enforced here, energy would be pumped in.)
+   subroutine restart_acceleration(scene, motion, error)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(inout) :: motion
+      type(error_type), allocatable, intent(out) :: error
+
+      call hold_acceleration(scene, motion, motion%touching, error)
+   end subroutine restart_acceleration
+
+   !> The same with any rows held.
+   subroutine hold_acceleration(scene, motion, held, error)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(inout) :: motion
+      logical, intent(in) :: held(:)
+      type(error_type), allocatable, intent(out) :: error
+      type(compliance_type) :: compliance
+      real(wp) :: force(size(motion%motion%a))
+      real(wp), allocatable :: q(:), forces(:)
+      integer :: sense(scene%rows%n)
+      logical :: solved
+
+      call mass_compliance(scene, held, compliance, error)
+      if (allocated(error)) return
+      motion%motion%a = merge(motion%motion%a, 0.0_wp, scene%system%structure%map%prescribed)
+      force = force_balance(scene%system, motion%motion) &
+            - inertia_force(scene%system%structure, motion%motion%a)
+      motion%motion%a = motion%motion%a + solve_mass(scene%system, force)
+      motion%lambda = 0.0_wp
+      motion%tau = 0.0_wp
+      if (compliance%n > 0) then
+         q = join_rates(compliance, row_accelerations(scene%rows, motion%motion%a) &
+               + row_curvature(scene%rows, motion%motion), &
+               slip_products(scene%rows, motion%motion%a))
+         sense = slip_senses(scene, motion)
+         allocate (forces(size(q)))
+         call solve_rows(compliance%w, q, scene%rows%friction(compliance%rows), &
+               held(compliance%rows), forces, solved, sense(compliance%rows))
+         if (.not. solved) then
+            call dependent_impulses(error)
+            return
+         end if
+         call split_forces(compliance, forces, motion%lambda, motion%tau)
+         motion%motion%a = motion%motion%a + matmul(compliance%x, forces)
+      end if
+      motion%sticking = held .and. scene%rows%friction > 0.0_wp .and. .not. &
+            abs(motion%tau) >= scene%rows%friction*motion%lambda*(1.0_wp - slip_tolerance)
+      call note_contact_force(scene, motion)
+   end subroutine hold_acceleration
+
+   !> Which way rows slide, 0 where they do not.
+   function slip_senses(scene, motion) result(sense)
+      type(scene_type), intent(in) :: scene
+      type(contact_motion_type), intent(in) :: motion
+      integer :: sense(scene%rows%n)
+      real(wp) :: slip(scene%rows%n), limit
+
+      sense = 0
+      if (.not. any(scene%rows%friction > 0.0_wp)) return
+      slip = slip_rates(scene%rows, motion%motion)
+      limit = rest_tolerance*maxval(abs(motion%motion%v))
+      where (abs(slip) > limit .and. .not. motion%sticking) sense = nint(sign(1.0_wp, slip))
+   end function slip_senses
+
+   !> Gap rates of touching rows after a span in which the wall's own speed has changed: impulses
+   !> that bring them to zero, 0 <= p + I, G v + W p >= 0, complementary. A row takes back no more
+   !> than the contact impulse I of the span; what still opens then is thrown off by the wall.
+   subroutine follow_wall(scene, motion, span_impulse, dt, thrown, error)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(inout) :: motion
+      real(wp), intent(in) :: span_impulse(:)    !! (n_rows) I
+      real(wp), intent(in) :: dt                 !! the whole step, for round-off
+      logical, intent(out) :: thrown(:)          !! (n_rows)
+      type(error_type), allocatable, intent(out) :: error
+      type(compliance_type) :: compliance
+      real(wp), dimension(scene%rows%n) :: rates, available, impulse, after
+      real(wp) :: p(count(motion%touching)), limit
+      logical :: solved
+
+      thrown = .false.
+      if (.not. any(motion%touching)) return
+      rates = row_rates(scene%rows, motion%motion)
+      limit = thrown_tolerance*rate_size(scene%rows, motion%motion) &
+            + gap_tolerance*gap_size(scene%rows, motion%motion, dt)/dt
+      if (.not. any(motion%touching .and. abs(rates) > limit)) return
+      call mass_compliance(scene, motion%touching, compliance, error, .true.)
+      if (allocated(error)) return
+      available = max(0.0_wp, span_impulse)
+      ! at rest all rates are round-off of what the contact impulses have held back
+      limit = limit + thrown_tolerance*maxval(abs(matmul(compliance%w, available(compliance%rows))))
+      if (.not. any(motion%touching .and. abs(rates) > limit)) return
+      call solve_complementarity(compliance%w, rates(compliance%rows) &
+            - matmul(compliance%w, available(compliance%rows)), p, solved)
+      if (.not. solved) then
+         call dependent_impulses(error)
+         return
+      end if
+      impulse = 0.0_wp
+      impulse(compliance%rows) = p - available(compliance%rows)
+      motion%motion%v = motion%motion%v + matmul(compliance%x, impulse(compliance%rows))
+      after = row_rates(scene%rows, motion%motion)
+      call book_impulse(scene, motion, impulse, rates, after)
+      scene%impulse = scene%impulse + impulse
+      thrown = motion%touching .and. after > limit
+   end subroutine follow_wall
+
+   !> Puts touching rows back on gap zero and gap rate zero where they are off by more than the
+   !> limits, by the smallest mass-weighted change.
+   subroutine project_touching(scene, motion, gap_limit, rate_limit, error)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(inout) :: motion
+      real(wp), intent(in) :: gap_limit, rate_limit
+      type(error_type), allocatable, intent(out) :: error
+      type(compliance_type) :: compliance
+      real(wp), dimension(scene%rows%n) :: gaps, rates, impulse
+      real(wp) :: p(count(motion%touching))
+      logical :: solved
+
+      if (.not. any(motion%touching)) return
+      gaps = merge(row_gaps(scene%rows, motion%motion), 0.0_wp, motion%touching)
+      rates = merge(row_rates(scene%rows, motion%motion), 0.0_wp, motion%touching)
+      if (maxval(abs(gaps)) <= gap_limit .and. maxval(abs(rates)) <= rate_limit) return
+      call mass_compliance(scene, motion%touching, compliance, error, .true.)
+      if (allocated(error)) return
+      if (maxval(abs(gaps)) > gap_limit) then
+         call solve_equality(compliance%w, gaps(compliance%rows), p, solved)
+         motion%motion%d = motion%motion%d + matmul(compliance%x, p)
+      end if
+      if (maxval(abs(rates)) <= rate_limit) return
+      rates = 0.0_wp
+      call set_rates(scene, motion, motion%touching, rates, impulse, error)
+   end subroutine project_touching
+
+   !> Applies the impulses that give the marked rows the gap rates asked for.
+   subroutine set_rates(scene, motion, marked, target_rate, impulse, error)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(inout) :: motion
+      logical, intent(in) :: marked(:)           !! (n_rows)
+      real(wp), intent(in) :: target_rate(:)     !! (n_rows)
+      real(wp), intent(out) :: impulse(:)        !! (n_rows)
+      type(error_type), allocatable, intent(out) :: error
+      type(compliance_type) :: compliance
+      real(wp), dimension(scene%rows%n) :: before, after
+      real(wp) :: p(count(marked))
+      logical :: solved
+
+      impulse = 0.0_wp
+      call mass_compliance(scene, marked, compliance, error, .true.)
+      if (allocated(error)) return
+      before = row_rates(scene%rows, motion%motion)
+      call solve_equality(compliance%w, before(compliance%rows) - target_rate(compliance%rows), p, &
+            solved)
+      if (.not. solved) then
+         call dependent_impulses(error)
+         return
+      end if
+      motion%motion%v = motion%motion%v + matmul(compliance%x, p)
+      impulse(compliance%rows) = p
+      after = row_rates(scene%rows, motion%motion)
+      call book_impulse(scene, motion, impulse, before, after)
+      scene%impulse = scene%impulse + impulse
+   end subroutine set_rates
+
+   !> Energy: the bodies gain p . (r- + r+)/2 less what the wall's own motion does; with the gap
+   !> rate
+   !> r = G v + c', the wall gives -p . c'.
+   subroutine book_impulse(scene, motion, impulse, before, after)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(in) :: motion
+      real(wp), intent(in) :: impulse(:), before(:), after(:)   !! (n_rows)
+
+      call record_impact(scene%ledger, -dot_product(impulse, before + after)/2.0_wp, &
+            -dot_product(impulse, wall_rates(scene%rows, motion%motion%t)))
+   end subroutine book_impulse
+
+   !> Energy that friction impulses take: the bodies lose -p_t . (s- + s+)/2 with the slip rates s.
+   subroutine book_friction(scene, motion, impulse, before)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(in) :: motion
+      real(wp), intent(in) :: impulse(:)         !! (n_rows) along the tangents
+      real(wp), intent(in) :: before(:)          !! (n_rows) slip rates before
+      real(wp) :: work
+
+      if (.not. any(abs(impulse) > 0.0_wp)) return
+      work = -dot_product(impulse, before + slip_rates(scene%rows, motion%motion))/2.0_wp
+      call record_friction(scene%ledger, work)
+      call record_impact(scene%ledger, work, 0.0_wp)
+   end subroutine book_friction
+
+   subroutine dependent_impulses(error)
+      type(error_type), allocatable, intent(out) :: error
+
+      call new_error(error, status_numerical, &
+            'an impact has no answer: a contact row has no mass '// &
+            'behind it, or rows depend on each other'//new_line('a')// &
+            '  cure: give every contact node a mass, and let none touch the same wall twice')
+   end subroutine dependent_impulses
+
+end module contact_impulses

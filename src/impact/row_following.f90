@@ -1,0 +1,99 @@
+!> Rows of bodies that slide on each other, step by step: placed where the step is going to end, and
+!> put right at its end, where nodes in contact are brought back onto the edge.
+module row_following
+   use kinds, only: wp
+   use errors, only: error_type
+   use motion_state, only: state_type
+   use constraint_rows, only: row_gaps, row_rates, rate_size
+   use row_placement, only: place_rows
+   use impact_scene, only: scene_type, contact_motion_type, event_type, record_event, &
+         event_release, rate_tolerance
+   use contact_impulses, only: project_touching
+   implicit none
+   private
+
+   public :: rows_ahead, rows_here, settle_rows
+
+   !> A node looks for partners as far as this multiple of the largest motion in the step.
+   real(wp), parameter :: reach_factor = 4.0_wp
+   !> Gaps of rows in contact are closed to this part of the geometry's size.
+   real(wp), parameter :: closed_tolerance = 1.0e-14_wp
+   integer, parameter :: max_rounds = 5
+
+contains
+
+   !> Rows where the motion will be after dt as it goes now.
+   subroutine rows_ahead(scene, motion, dt)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(in) :: motion
+      real(wp), intent(in) :: dt
+      type(state_type) :: ahead
+
+      if (.not. scene%rows%moving) return
+      ahead = motion%motion
+      ahead%t = ahead%t + dt
+      ahead%d = ahead%d + dt*ahead%v + dt**2/2.0_wp*ahead%a
+      call place_rows(scene%rows, scene%geometry, scene%system%structure%map, motion%motion, ahead, &
+            reach(scene, motion, dt))
+   end subroutine rows_ahead
+
+   !> Rows where the motion is.
+   subroutine rows_here(scene, motion, dt)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(in) :: motion
+      real(wp), intent(in) :: dt
+
+      if (.not. scene%rows%moving) return
+      call place_rows(scene%rows, scene%geometry, scene%system%structure%map, motion%motion, &
+            motion%motion, reach(scene, motion, dt))
+   end subroutine rows_here
+
+   pure function reach(scene, motion, dt) result(distance)
+      type(scene_type), intent(in) :: scene
+      type(contact_motion_type), intent(in) :: motion
+      real(wp), intent(in) :: dt
+      real(wp) :: distance
+      real(wp), parameter :: least_share = 1.0e-6_wp
+
+      distance = reach_factor*dt*(maxval(abs(motion%motion%v)) + dt*maxval(abs(motion%motion%a)))
+      distance = max(distance, least_share*scene%geometry%size)
+   end function reach
+
+   !> At the end of a step: rows at their exact places, those that touch closed to round-off in gap
+   !> and gap rate; a row that has slid off its surface is released.
+   subroutine settle_rows(scene, motion, dt, error)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(inout) :: motion
+      real(wp), intent(in) :: dt
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: gaps(scene%rows%n), limit
+      integer :: i
+
+      if (.not. scene%rows%moving) return
+      limit = closed_tolerance*scene%geometry%size
+      do i = 1, max_rounds
+         call rows_here(scene, motion, dt)
+         call release_lost(scene, motion)
+         if (.not. any(motion%touching)) return
+         gaps = merge(row_gaps(scene%rows, motion%motion), 0.0_wp, motion%touching)
+         if (i > 1 .and. maxval(abs(gaps)) <= limit) return
+         call project_touching(scene, motion, limit, &
+               rate_tolerance*rate_size(scene%rows, motion%motion), error)
+         if (allocated(error)) return
+      end do
+   end subroutine settle_rows
+
+   subroutine release_lost(scene, motion)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(inout) :: motion
+      integer :: i
+
+      do i = 1, scene%rows%n
+         if (.not. motion%touching(i) .or. scene%rows%facing(i)) cycle
+         motion%touching(i) = .false.
+         call record_event(scene, event_type(motion%motion%t, event_release, i, 0.0_wp, 0.0_wp, &
+               0.0_wp, scene%system%newmark%beta))
+      end do
+   end subroutine release_lost
+
+end module row_following
