@@ -12,6 +12,7 @@ module contact_geometry
    use row_terms, only: row_terms_type, start_terms, start_row_terms, add_term
    use target_surface, only: target_type, new_target, update_target
    use contact_search, only: partner_type, find_partner
+   use weighted_rows, only: weighted_rows_type, find_weighted_rows
    implicit none
    private
 
@@ -23,7 +24,9 @@ module contact_geometry
       integer :: target = 0                      !! index into the targets, 0: rigid or gaps
       type(rigid_surface_type) :: circle         !! a rigid circle
       logical :: frozen = .true.
+      logical :: weighted = .false.              !! rows weighted over the contactor's edges
       integer, allocatable :: edges(:, :)        !! (3, n) of the contactor surface
+      type(target_type) :: contactor             !! the same, of weighted rows
    end type pass_type
 
    !> All surfaces, with what the search needs.
@@ -118,6 +121,8 @@ contains
          n_targets = n_targets + 1
          pass%target = n_targets
          call new_target(self%targets(n_targets), model%surfaces(master)%edges, model%nodes%n)
+         pass%weighted = pair%weighted
+         if (pass%weighted) call new_target(pass%contactor, pass%edges, model%nodes%n)
       end associate
    end subroutine begin_pass
 
@@ -154,24 +159,30 @@ contains
       type(positions_type), intent(in) :: positions
       type(row_terms_type), intent(inout) :: terms
       real(wp), allocatable :: normals(:, :)
-      integer :: i
+      type(weighted_rows_type) :: weighted
+      integer :: i, next
 
-      if (pass%target > 0) then
-         call update_target(self%targets(pass%target), positions%before, positions%now, &
-               positions%reach)
+      if (pass%target > 0) call update_target(self%targets(pass%target), positions%before, &
+            positions%now, positions%reach)
+      if (pass%weighted) then
+         call find_weighted_rows(pass%contactor, self%targets(pass%target), positions%now, &
+               positions%reach, weighted)
+      else if (pass%target > 0) then
          call find_normals(pass, positions%now, self%rows, normals)
       end if
+      next = 1
       do i = pass%first, pass%last
          call start_row_terms(terms, i)
          terms%at_rest(i) = pass%frozen
-         select case (self%rows(i)%kind)
-         case (row_fixed)
+         if (pass%weighted) then
+            call place_weighted(weighted, next, self%rows(i)%node, i, terms)
+         else if (self%rows(i)%kind == row_fixed) then
             call place_fixed(self%rows(i), i, terms)
-         case (row_circle)
+         else if (self%rows(i)%kind == row_circle) then
             call place_on_circle(self, pass, i, positions, terms)
-         case default
+         else
             call place_on_edge(self, pass, i, positions, normals(:, i - pass%first + 1), terms)
-         end select
+         end if
       end do
    end subroutine place_pass
 
@@ -291,6 +302,29 @@ contains
                -partner%shape(k)*along, partner%slope(k)*normal)
       end do
    end subroutine place_on_edge
+
+   !> The weighted row of a node, if it has one; both lists ascend.
+   subroutine place_weighted(weighted, next, node, i, terms)
+      type(weighted_rows_type), intent(in) :: weighted
+      integer, intent(inout) :: next             !! row that comes next
+      integer, intent(in) :: node, i
+      type(row_terms_type), intent(inout) :: terms
+      real(wp), parameter :: none(3) = 0.0_wp
+      integer :: k
+
+      if (next > weighted%n) return
+      if (weighted%slave_node(next) /= node) return
+      terms%facing(i) = .true.
+      terms%gap(i) = weighted%gap(next)
+      terms%weight(i) = weighted%weight(next)
+      terms%direction(:2, i) = weighted%normal(:, next)
+      terms%along(:2, i) = [-weighted%normal(2, next), weighted%normal(1, next)]
+      do k = weighted%first(next), weighted%first(next + 1) - 1
+         call add_term(terms, i, weighted%node(k), [weighted%normal_coefficient(:, k), 0.0_wp], &
+               [weighted%tangent_coefficient(:, k), 0.0_wp], none)
+      end do
+      next = next + 1
+   end subroutine place_weighted
 
    !> Appends row i of one set of terms to another.
    pure subroutine copy_row(from, i, to)
