@@ -18,6 +18,9 @@ module contact_geometry
 
    public :: contact_geometry_type, new_contact_geometry, find_row_terms
 
+   !> No reach is longer than this multiple of the extent of the nodes.
+   real(wp), parameter :: widest_reach = 10.0_wp
+
    !> Rows first to last of the list, which are the nodes of one surface, against a target.
    type :: pass_type
       integer :: first = 0, last = -1
@@ -44,7 +47,7 @@ module contact_geometry
    !> Positions of all nodes before and after a motion, and how far a node looks for a partner.
    type :: positions_type
       real(wp) :: t = 0.0_wp                     !! after it
-      real(wp) :: reach = huge(1.0_wp)
+      real(wp) :: reach = 0.0_wp
       real(wp), allocatable :: before(:, :), now(:, :)   !! (3, n_nodes)
    end type positions_type
 
@@ -81,6 +84,7 @@ contains
       end do
       self%moving = any(.not. self%passes%frozen)
       call start_terms(self%frozen, size(self%rows))
+      positions%reach = widest_reach*self%size
       positions%before = self%x
       positions%now = self%x
       do i = 1, n_passes
@@ -137,7 +141,7 @@ contains
       integer :: i, k
 
       positions%t = t
-      positions%reach = reach
+      positions%reach = min(reach, widest_reach*self%size)
       positions%before = self%x + before
       positions%now = self%x + now
       call start_terms(terms, size(self%rows))

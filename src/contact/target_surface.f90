@@ -34,6 +34,7 @@ module target_surface
       real(wp), private :: drift(2) = 0.0_wp     !! mean displacement since the building
       real(wp), private :: slack = -1.0_wp       !! motion beside the drift that the bins allow
       real(wp), private :: reach = 0.0_wp        !! that the bins were built for
+      real(wp), private :: least_slack = 0.0_wp
    end type target_type
 
 contains
@@ -95,7 +96,9 @@ contains
             moved = max(moved, norm2(now - self%built(:, i) - self%drift))
          end associate
       end do
-      if (moved <= self%slack .and. reach <= 2.0_wp*self%reach) return
+      ! bins for a wide reach would make every later search a wide one
+      if (moved <= self%slack .and. reach <= 2.0_wp*self%reach .and. &
+            self%slack <= 4.0_wp*max(reach, self%least_slack)) return
       call build_bins(self, x_now, reach)
    end subroutine update_target
 
@@ -114,7 +117,8 @@ contains
          high(:, e) = box(:, 2)
       end do
       least = minval(maxval(high - low, 1))
-      self%slack = max(reach, least/2.0_wp, 1.0e-6_wp*maxval(high - low))
+      self%least_slack = max(least/2.0_wp, 1.0e-6_wp*maxval(high - low))
+      self%slack = max(reach, self%least_slack)
       self%reach = max(reach, self%slack)
       call new_bins(self%bins, low, high, reach)
       self%built = x_now(1:2, self%nodes)
