@@ -4,7 +4,7 @@ module effective_matrix
    use kinds, only: wp
    use mesh, only: scheme_implicit
    use skyline_matrix, only: profile_type, new_profile, couple, skyline_type, new_skyline
-   use element_groups, only: group_type
+   use element_groups, only: group_type, group_mass
    use dof_map, only: dof_map_type
    use structure, only: structure_type, gather, group_history
    implicit none
@@ -148,7 +148,7 @@ contains
       do e = 1, size(group%lm, 2)
          total = 0.0_wp
          if (.not. group%lumped) then
-            call group%element%mass(e, .false., part)
+            call group_mass(group, e, .false., part)
             total = factors(1)*part
          end if
          if (has_implicit_matrix(group)) then

@@ -21,7 +21,7 @@ module element_groups
    implicit none
    private
 
-   public :: group_type, build_groups
+   public :: group_type, build_groups, group_mass
 
    !> Elements of one kind, section, scheme and mass.
    type :: group_type
@@ -34,6 +34,11 @@ module element_groups
       integer :: scheme = scheme_implicit
       logical :: lumped = .true.
       real(wp), allocatable :: damping(:, :, :)  !! (3 n_nodes, 3 n_nodes, n), empty without any
+      !> Of redistributed mass (else not allocated): 0 at nodes that have lost theirs, 1 elsewhere;
+      !> what was moved to them; by what the element's mass is multiplied after that.
+      real(wp), allocatable :: mass_share(:, :)  !! (n_nodes, n)
+      real(wp), allocatable :: moved_mass(:, :)  !! (n_nodes, n)
+      real(wp), allocatable :: mass_factor(:)    !! (n)
    end type group_type
 
 contains
@@ -263,6 +268,30 @@ contains
          end select
       end do
    end subroutine find_kinematics
+
+   !> Mass of element e of a group, redistributed where contact asks for it: factor times
+   !> (D M D + diag(moved)), D zero at contact nodes.
+   pure subroutine group_mass(group, e, lumped, matrix, part)
+      type(group_type), intent(in) :: group
+      integer, intent(in) :: e
+      logical, intent(in) :: lumped
+      real(wp), intent(out) :: matrix(:, :)      !! (3 n_nodes, 3 n_nodes)
+      real(wp), intent(in), optional :: part     !! of M, 1 without
+      integer :: i, node
+      logical :: has_mass
+
+      call group%element%mass(e, lumped, matrix)
+      if (present(part)) matrix = part*matrix
+      if (.not. allocated(group%moved_mass)) return
+      do i = 1, size(matrix, 1)
+         node = (i + 2)/3
+         has_mass = matrix(i, i) > 0.0_wp
+         matrix(:, i) = group%mass_share(node, e)*matrix(:, i)
+         matrix(i, :) = group%mass_share(node, e)*matrix(i, :)
+         if (has_mass) matrix(i, i) = matrix(i, i) + group%moved_mass(node, e)
+      end do
+      matrix = group%mass_factor(e)*matrix
+   end subroutine group_mass
 
    !> Keeps the damping matrices if there is any damping in the group.
    subroutine store_damping(group)

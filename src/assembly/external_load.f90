@@ -292,7 +292,8 @@ contains
       load%ramped = step%procedure == procedure_static .and. .not. load%has_amplitude
    end subroutine give_time
 
-   !> M times the acceleration, on the elements of a set (0: all).
+   !> M times the acceleration, on the elements of a set (0: all). Weight stays with the elements:
+   !> where contact nodes have lost their mass, they keep their load.
    function gravity_pattern(structure, model, set, acceleration) result(pattern)
       type(structure_type), intent(in) :: structure
       type(model_type), intent(in) :: model

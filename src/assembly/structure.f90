@@ -6,8 +6,9 @@ module structure
    use text, only: to_text
    use places, only: fail_at
    use model, only: model_type
-   use element_groups, only: group_type, build_groups
+   use element_groups, only: group_type, build_groups, group_mass
    use needed_freedoms, only: find_needed_freedoms
+   use redistributed_mass, only: redistribute_mass
    use dof_map, only: dof_map_type, new_dof_map
    implicit none
    private
@@ -30,7 +31,8 @@ module structure
 
 contains
 
-   !> Builds groups, freedoms and mass. Errors: zero-length elements, empty freedoms.
+   !> Builds groups, freedoms and mass. Errors: zero-length elements, empty freedoms, mass that
+   !> cannot be redistributed.
    subroutine new_structure(self, model, error, automatic)
       type(structure_type), intent(out) :: self
       type(model_type), intent(in) :: model
@@ -45,6 +47,8 @@ contains
          lumped_default = lumped_default .or. model%steps(i)%explicit
       end do
       call build_groups(self%groups, model, lumped_default, error, automatic)
+      if (allocated(error)) return
+      call redistribute_mass(self%groups, model, error)
       if (allocated(error)) return
       call find_needed_freedoms(model, self%groups, needed)
       call new_dof_map(self%map, needed)
@@ -128,7 +132,7 @@ contains
             do e = 1, size(group%member)
                call group%element%largest_stiffness(e, k)
                call group%element%damping(e, c)
-               call group%element%mass(e, group%lumped, m)
+               call group_mass(group, e, group%lumped, m)
                do i = 1, size(group%lm, 1)
                   entry = abs(k(i, i)) + abs(c(i, i)) + m(i, i) > 0.0_wp
                   entry = entry .or. .not. group%element%linear
@@ -243,7 +247,7 @@ contains
          allocate (m(size(local, 1), size(local, 1)))
          call gather(self%groups(g), a, local)
          do e = 1, size(local, 2)
-            call self%groups(g)%element%mass(e, .false., m)
+            call group_mass(self%groups(g), e, .false., m)
             local(:, e) = matmul(m, local(:, e))
          end do
          call scatter(self%groups(g), local, force)
@@ -277,7 +281,7 @@ contains
       end do
    end function least_mass
 
-   !> Adds a part of the lumped mass of a group.
+   !> Adds a part of the lumped mass of a group, and all of the mass that redistribution added.
    pure subroutine add_lumped(group, part, mass)
       type(group_type), intent(in) :: group
       real(wp), intent(in) :: part
@@ -286,10 +290,10 @@ contains
       integer :: e, i
 
       do e = 1, size(group%member)
-         call group%element%mass(e, .true., m)
+         call group_mass(group, e, .true., m, part)
          do i = 1, size(m, 1)
             if (group%lm(i, e) == 0) cycle
-            mass(group%lm(i, e)) = mass(group%lm(i, e)) + part*m(i, i)
+            mass(group%lm(i, e)) = mass(group%lm(i, e)) + m(i, i)
          end do
       end do
    end subroutine add_lumped
@@ -320,7 +324,7 @@ contains
       energy = group%element%strain_energy(local, group_history(group, history))
    end function group_strain_energy
 
-   !> Kinetic energy of the mass of one group.
+   !> Kinetic energy of the mass of one group; of redistributed mass, what its elements now have.
    pure function group_kinetic_energy(group, v) result(energy)
       type(group_type), intent(in) :: group
       real(wp), intent(in) :: v(:)               !! (n_freedoms)
@@ -332,7 +336,7 @@ contains
       call gather(group, v, local)
       energy = 0.0_wp
       do e = 1, size(local, 2)
-         call group%element%mass(e, group%lumped, m)
+         call group_mass(group, e, group%lumped, m)
          energy = energy + dot_product(local(:, e), matmul(m, local(:, e)))/2.0_wp
       end do
    end function group_kinetic_energy

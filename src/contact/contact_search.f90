@@ -8,12 +8,12 @@
 !> of the edge's length, n is the mean of both normals where the edges differ by less than 45
 !> degrees, else that of the edge that faces the node better or, with no difference, on whose side
 !> it is. At an open end of a surface n stays that of the edge, and a node beyond the end by more
-!> than the target's overhang has no partner there.
+!> than the target's overhang has no partner there: a tenth of the edge, since bodies of one width
+!> that meet do not bulge alike.
 module contact_search
    use kinds, only: int64, wp
-   use topology, only: line_derivatives, line_functions
-   use segment_projection, only: closest_on_edge, cut_edge, edge_frame
-   use target_surface, only: edge_coordinates, edges_near, target_type
+   use segment_projection, only: closest_on_edge, cut_edge, edge_frame, edge_functions
+   use target_surface, only: edge_coordinates, edges_near, mean_normal, target_type
    implicit none
    private
 
@@ -31,7 +31,7 @@ module contact_search
    type :: partner_type
       integer :: edge = 0                        !! of the target, 0: none
       real(wp) :: s = 0.0_wp                     !! place on the edge, -1 to 1
-      logical :: at_vertex = .false.             !! X is a vertex and n not the normal of an edge
+      logical :: at_vertex = .false.             !! X stays at a vertex: slope and bend are 0
       real(wp) :: gap = 0.0_wp                   !! n . (x - X)
       real(wp) :: normal(2) = 0.0_wp             !! n, outward of the target
       real(wp) :: tangent(2) = 0.0_wp            !! (-n_y, n_x)
@@ -56,9 +56,9 @@ contains
 
    !> Finds the partner of a node: where its path relative to the edges crosses one from its outer
    !> to its inner side, the first edge crossed, or one near it that is closer at the end; else the
-   !> closest edge, when the gap is less than the reach and an overlap not more than twice the
-   !> relative motion or half the length of the edge. Edges with this node are never partners. The
-   !> target must have been updated with the same positions.
+   !> closest edge, when a gap is not more than the reach and an overlap not more than the reach and
+   !> half the length of the edge, or than twice the relative motion. Edges with this node are never
+   !> partners. The target must have been updated with the same positions.
    pure subroutine find_partner(self, x_before, x_now, node, reach, allowed_normal, partner)
       type(target_type), intent(inout) :: self
       real(wp), intent(in) :: x_before(:, :), x_now(:, :) !! (2 or 3, n_nodes) at the step's ends
@@ -69,49 +69,67 @@ contains
       type(query_type) :: query
       type(partner_type) :: trial
       integer :: i, crossed
-      real(wp) :: path(2), least, distance, first, fraction
+      real(wp) :: path(2), least, deep, far, distance, first, fraction
 
       query = query_type(node=node, before=x_before(1:2, node), now=x_now(1:2, node), &
             facing=allowed_normal, reach=reach)
-      call look_at_own_edges(self, x_now, query)
+      if (self%leaving(node) + self%arriving(node) > 0) then
+         query%limit = -facing_limit
+         if (.not. any(abs(allowed_normal) > 0.0_wp)) query%facing = mean_normal(self, x_now, node)
+      end if
       path = query%now - query%before - self%motion
       call edges_near(self, min(query%now, query%now - path), max(query%now, query%now - path), &
-            max(reach, 2.0_wp*(norm2(path) + self%unrest)), 1.5_wp*overlap_share)
+            max(reach, 2.0_wp*(norm2(path) + self%unrest)))
       least = huge(1.0_wp)
+      deep = huge(1.0_wp)
+      far = huge(1.0_wp)
       first = huge(1.0_wp)
       crossed = 0
       do i = 1, self%n_found
          if (any(self%edges(:, self%found(i)) == node)) cycle
          self%n_tests = self%n_tests + 1
+         distance = least
          call compare(self, x_before, x_now, query, self%found(i), trial, distance, fraction)
          if (fraction < first) then
             first = fraction
             crossed = self%found(i)
          end if
-         if (trial%edge == 0 .or. distance >= least) cycle
+         if (trial%edge < 0 .and. trial%gap > 0.0_wp) far = min(far, distance)
+         if (trial%edge < 0 .and. trial%gap < 0.0_wp) deep = min(deep, distance)
+         if (trial%edge <= 0) cycle
+         ! Of edges that meet in the closest point the first of the surface, as bins have no order.
+         if (distance >= least .and. partner%edge < trial%edge) cycle
          least = distance
          partner = trial
       end do
+      ! Deep inside no other side of the body is seen from outside, nor one from inside far outside.
+      if (partner%gap > deep .or. -partner%gap > far) partner = partner_type()
       if (crossed == 0) return
-      if (cuts_corner(self, x_now, crossed, partner, norm2(path) + self%unrest)) return
+      if (cuts_corner(self, x_before, x_now, query, crossed, partner)) return
       call project_along(self, x_now, query, crossed, trial)
       if (trial%edge > 0) partner = trial
    end subroutine find_partner
 
    !> True if the closest point is so near along the surface to the edge that was crossed that the
-   !> node has only cut the corner between them: no further than four times its path.
-   pure function cuts_corner(self, x_now, crossed, partner, path) result(cuts)
+   !> node has only cut the corner between them: no further than three times its path.
+   pure function cuts_corner(self, x_before, x_now, query, crossed, partner) result(cuts)
       type(target_type), intent(in) :: self
-      real(wp), intent(in) :: x_now(:, :)
+      real(wp), intent(in) :: x_before(:, :), x_now(:, :)
+      type(query_type), intent(in) :: query
       integer, intent(in) :: crossed
       type(partner_type), intent(in) :: partner
-      real(wp), intent(in) :: path               !! length
       logical :: cuts
       integer :: after, before, i
-      real(wp) :: ahead, behind
+      real(wp) :: ahead, behind, limit, path(2)
 
       cuts = .false.
       if (partner%edge == 0) return
+      path = query%now - query%before
+      do i = 1, partner%n_nodes
+         path = path - partner%shape(i)*(x_now(1:2, partner%nodes(i)) &
+               - x_before(1:2, partner%nodes(i)))
+      end do
+      limit = 3.0_wp*norm2(path)
       after = partner%edge
       before = partner%edge
       ahead = partner%stretch*(1.0_wp - partner%s)
@@ -119,8 +137,8 @@ contains
       do i = 1, size(self%next)
          cuts = after == crossed .or. before == crossed
          if (cuts) return
-         if (ahead > 4.0_wp*path) after = 0
-         if (behind > 4.0_wp*path) before = 0
+         if (ahead > limit) after = 0
+         if (behind > limit) before = 0
          if (after > 0) after = self%next(after)
          if (before > 0) before = self%previous(before)
          if (after + before == 0) return
@@ -138,82 +156,59 @@ contains
       length = norm2(x_now(1:2, self%edges(2, edge)) - x_now(1:2, self%edges(1, edge)))
    end function edge_chord
 
-   !> A node of the target itself looks away from its own edges.
-   pure subroutine look_at_own_edges(self, x_now, query)
-      type(target_type), intent(in) :: self
-      real(wp), intent(in) :: x_now(:, :)
-      type(query_type), intent(inout) :: query
-      real(wp) :: total(2)
-
-      if (self%leaving(query%node) + self%arriving(query%node) == 0) return
-      query%limit = -facing_limit
-      if (any(abs(query%facing) > 0.0_wp)) return
-      total = own_normal(self, x_now, self%leaving(query%node), query%node) &
-            + own_normal(self, x_now, self%arriving(query%node), query%node)
-      if (norm2(total) > facing_limit) query%facing = total/norm2(total)
-   end subroutine look_at_own_edges
-
-   pure function own_normal(self, x_now, edge, node) result(normal)
-      type(target_type), intent(in) :: self
-      real(wp), intent(in) :: x_now(:, :)
-      integer, intent(in) :: edge, node
-      real(wp) :: normal(2)
-      real(wp) :: x(2, 3), point(2), tangent(2), stretch, bend, s
-
-      normal = 0.0_wp
-      if (edge == 0) return
-      s = 0.0_wp
-      if (self%edges(1, edge) == node) s = -1.0_wp
-      if (self%edges(2, edge) == node) s = 1.0_wp
-      x = edge_coordinates(self, edge, x_now)
-      call edge_frame(x(:, :self%n_edge_nodes(edge)), s, point, tangent, normal, stretch, bend)
-   end function own_normal
-
-   !> One edge: the partner that it would be by its closest point, with edge 0 if it is none, and
-   !> the fraction of the step after which the node crosses it, huge if it does not.
+   !> One edge: the partner that it would be by its closest point, with edge 0 if it is none or
+   !> farther than a distance, a negative one if the gap or the overlap is too large, and the
+   !> fraction of the step after which the node crosses it, huge if it does not.
    pure subroutine compare(self, x_before, x_now, query, edge, trial, distance, fraction)
       type(target_type), intent(in) :: self
       real(wp), intent(in) :: x_before(:, :), x_now(:, :)
       type(query_type), intent(in) :: query
       integer, intent(in) :: edge
       type(partner_type), intent(out) :: trial
-      real(wp), intent(out) :: distance, fraction
+      real(wp), intent(inout) :: distance        !! limit, then that of the closest point
+      real(wp), intent(out) :: fraction
       integer :: n
-      real(wp) :: x(2, 3), change(2, 3), s, s_free, path(2)
+      real(wp) :: x(2, 3), change(2, 3), shape(3), rise(3), s, s_free, path(2), limit
 
       fraction = huge(1.0_wp)
       n = self%n_edge_nodes(edge)
       x = edge_coordinates(self, edge, x_now)
       change = x - edge_coordinates(self, edge, x_before)
       call closest_on_edge(x(:, :n), query%now, s, s_free)
-      distance = norm2(query%now - matmul(x(:, :n), line_functions(n, s)))
-      path = query%now - query%before - matmul(change(:, :n), line_functions(n, s))
+      call edge_functions(n, s, shape, rise)
+      limit = distance
+      distance = norm2(query%now - matmul(x, shape))
+      path = query%now - query%before - matmul(change, shape)
       if (distance <= norm2(path) + self%unrest) then
-         call cross_edge(x(:, :n), change(:, :n), query, s, fraction)
+         call cross_edge(x(:, :n), change, query, s, fraction)
       end if
-      if (distance > max(query%reach, 2.0_wp*norm2(path), 4.0_wp*overlap_share &
-            *maxval(abs(x(:, 2) - x(:, 1))))) return
+      if (distance > limit) return
+      limit = 2.0_wp*norm2(path)
+      if (distance > max(query%reach, limit)) return
       call make_partner(self, x_now, query, edge, s, s_free, trial)
       if (trial%edge == 0) return
-      if (trial%gap > query%reach) trial%edge = 0
-      if (-trial%gap > max(2.0_wp*norm2(path), 2.0_wp*overlap_share*trial%stretch)) trial%edge = 0
+      limit = max(limit, min(query%reach, 2.0_wp*overlap_share*trial%stretch))
+      if (trial%gap > query%reach .or. -trial%gap > limit) trial%edge = -edge
    end subroutine compare
 
    !> The fraction of the step after which a node crosses an edge inward, both moving straight; the
    !> path is that relative to the point of the edge where it crosses.
    pure subroutine cross_edge(x, change, query, s_end, fraction)
-      real(wp), intent(in) :: x(:, :), change(:, :) !! edge now, and its displacements in the step
+      real(wp), intent(in) :: x(:, :)            !! (2, 2 or 3) edge now
+      real(wp), intent(in) :: change(2, 3)       !! its displacements in the step
       type(query_type), intent(in) :: query
       real(wp), intent(in) :: s_end              !! closest point at the end of the step
       real(wp), intent(out) :: fraction
       integer :: round
       logical :: found
-      real(wp) :: s, start(2), when, point(2), tangent(2), normal(2), stretch, bend
+      real(wp) :: s, start(2), when, shape(3), rise(3)
+      real(wp) :: point(2), tangent(2), normal(2), stretch, bend
 
       fraction = huge(1.0_wp)
       s = s_end
       do round = 1, 3
-         start = query%before + matmul(change, line_functions(size(x, 2), s))
+         call edge_functions(size(x, 2), s, shape, rise)
+         start = query%before + matmul(change, shape)
          call cut_edge(x, start, query%now, s, when, found)
          if (.not. found) return
       end do
@@ -255,12 +250,13 @@ contains
       type(query_type), intent(in) :: query
       integer, intent(in) :: edge
       real(wp), intent(out) :: s, s_free, distance
-      real(wp) :: x(2, 3)
+      real(wp) :: x(2, 3), shape(3), rise(3)
 
       x = edge_coordinates(self, edge, x_now)
       associate (n => self%n_edge_nodes(edge))
          call closest_on_edge(x(:, :n), query%now, s, s_free)
-         distance = norm2(query%now - matmul(x(:, :n), line_functions(n, s)))
+         call edge_functions(n, s, shape, rise)
+         distance = norm2(query%now - matmul(x, shape))
       end associate
    end subroutine project
 
@@ -316,12 +312,10 @@ contains
       associate (n => self%n_edge_nodes(partner%edge))
          partner%n_nodes = n
          partner%nodes = self%edges(:, partner%edge)
-         partner%shape = 0.0_wp
-         partner%slope = 0.0_wp
-         partner%shape(:n) = line_functions(n, partner%s)
+         call edge_functions(n, partner%s, partner%shape, partner%slope)
          call edge_frame(x(:, :n), partner%s, point, partner%tangent, partner%normal, &
                partner%stretch, partner%bend)
-         partner%slope(:n) = line_derivatives(n, partner%s)/partner%stretch
+         partner%slope = partner%slope/partner%stretch
       end associate
       offset = query%now - point
    end subroutine set_frame
@@ -345,6 +339,8 @@ contains
       across = dot_product(beyond%normal, offset)
       if (norm2(offset) > 2.0_wp*touch_share*partner%stretch) then
          partner%at_vertex = .true.
+         partner%slope = 0.0_wp
+         partner%bend = 0.0_wp
          partner%normal = sign(1.0_wp, own + across)*offset/norm2(offset)
       else if (dot_product(partner%normal, beyond%normal) > kink_limit) then
          partner%normal = partner%normal + beyond%normal

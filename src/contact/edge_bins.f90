@@ -65,12 +65,11 @@ contains
       end do
    end subroutine new_bins
 
-   !> Edges whose boxes may come closer to a box than a reach, or than a share of the size of the
-   !> edge's cell. Each is given once.
-   pure subroutine find_in_box(self, low, high, reach, share, found, n_found)
+   !> Edges whose boxes may come closer to a box than a reach. Each is given once.
+   pure subroutine find_in_box(self, low, high, reach, found, n_found)
       type(edge_bins_type), intent(in) :: self
       real(wp), intent(in) :: low(2), high(2)
-      real(wp), intent(in) :: reach, share
+      real(wp), intent(in) :: reach
       integer, intent(inout) :: found(:)         !! (number of edges) of which the first are set
       integer, intent(out) :: n_found
       integer :: grid, i, j, from(2), to(2)
@@ -79,7 +78,7 @@ contains
       n_found = 0
       do grid = 1, self%n_grids
          size_of_cell = 2.0_wp**self%exponent(grid)
-         margin = size_of_cell/2.0_wp + max(reach, share*size_of_cell)
+         margin = size_of_cell/2.0_wp + reach
          from = cell_of(self, grid, low - margin)
          to = cell_of(self, grid, high + margin)
          if (product(real(to - from + 1, wp)) > real(size(self%edge), wp)) then

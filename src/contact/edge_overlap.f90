@@ -4,8 +4,7 @@
 !> differ by less than 45 degrees, interpolated in between with the shape functions.
 module edge_overlap
    use kinds, only: wp
-   use topology, only: line_derivatives, line_functions
-   use segment_projection, only: cut_edge, edge_frame
+   use segment_projection, only: cut_edge, edge_frame, edge_functions
    use target_surface, only: edge_coordinates, edges_near, target_type
    implicit none
    private
@@ -58,7 +57,7 @@ contains
          self%normal(:, i) = self%normal(:, i)/norm2(self%normal(:, i))
       end do
       call edges_near(target, minval(self%x(:, :self%n), 2), maxval(self%x(:, :self%n), 2), &
-            2.0_wp*self%range, 0.0_wp)
+            2.0_wp*self%range)
       target%n_tests = target%n_tests + target%n_found
    end subroutine set_slave_edge
 
@@ -120,17 +119,16 @@ contains
       real(wp), intent(out) :: s
       logical, intent(out) :: found
       integer :: round
-      real(wp) :: offset(2), normal(2), slope(2), turn(2), change
+      real(wp) :: shape(3), rise(3), offset(2), normal(2), slope(2), turn(2), change
 
       found = .false.
       s = 0.0_wp
       do round = 1, 30
-         associate (shape => line_functions(self%n, s), rise => line_derivatives(self%n, s))
-            offset = matmul(self%x(:, :self%n), shape) - point
-            slope = matmul(self%x(:, :self%n), rise)
-            normal = matmul(self%normal(:, :self%n), shape)
-            turn = matmul(self%normal(:, :self%n), rise)
-         end associate
+         call edge_functions(self%n, s, shape, rise)
+         offset = matmul(self%x, shape) - point
+         slope = matmul(self%x, rise)
+         normal = matmul(self%normal, shape)
+         turn = matmul(self%normal, rise)
          change = cross(slope, normal) + cross(offset, turn)
          if (.not. abs(change) > 0.0_wp) return
          change = -cross(offset, normal)/change
@@ -158,12 +156,13 @@ contains
       integer :: i
       logical :: found
       real(wp) :: point(2), normal(2), x(2, 3), place, fraction, least
-      real(wp) :: across(2), along(2), outward(2), stretch, bend
+      real(wp) :: shape(3), rise(3), across(2), along(2), outward(2), stretch, bend
 
       edge = 0
       least = huge(1.0_wp)
-      point = matmul(self%x(:, :self%n), line_functions(self%n, s))
-      normal = matmul(self%normal(:, :self%n), line_functions(self%n, s))
+      call edge_functions(self%n, s, shape, rise)
+      point = matmul(self%x, shape)
+      normal = matmul(self%normal, shape)
       normal = normal/norm2(normal)
       do i = 1, target%n_found
          associate (n => target%n_edge_nodes(target%found(i)))

@@ -7,7 +7,7 @@ module segment_projection
    implicit none
    private
 
-   public :: cut_edge, closest_on_edge, edge_frame
+   public :: cut_edge, closest_on_edge, edge_frame, edge_functions
 
    real(wp), parameter :: round_off = 8.0_wp*epsilon(1.0_wp)
    real(wp), parameter :: place_of_node(3) = [-1.0_wp, 1.0_wp, 0.0_wp]
@@ -85,9 +85,15 @@ contains
       real(wp), intent(in) :: x(:, :)            !! (2, 2 or 3) nodes of the edge
       real(wp), intent(in) :: s
       real(wp), intent(out) :: point(2), tangent(2), normal(2), stretch, bend
+      real(wp) :: shape(3), rise(3)
 
-      point = matmul(x, line_functions(size(x, 2), s))
-      tangent = matmul(x, line_derivatives(size(x, 2), s))
+      call edge_functions(size(x, 2), s, shape, rise)
+      point = shape(1)*x(:, 1) + shape(2)*x(:, 2)
+      tangent = rise(1)*x(:, 1) + rise(2)*x(:, 2)
+      if (size(x, 2) == 3) then
+         point = point + shape(3)*x(:, 3)
+         tangent = tangent + rise(3)*x(:, 3)
+      end if
       stretch = max(norm2(tangent), tiny(1.0_wp))
       tangent = tangent/stretch
       normal = [tangent(2), -tangent(1)]
@@ -96,6 +102,24 @@ contains
          bend = dot_product(normal, (x(:, 1) - x(:, 3)) + (x(:, 2) - x(:, 3)))/stretch**2
       end if
    end subroutine edge_frame
+
+   !> N_p(s) and dN_p/ds of an edge of n nodes; zero of the third if there are two.
+   pure subroutine edge_functions(n, s, shape, rise)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: s
+      real(wp), intent(out) :: shape(3), rise(3)
+
+      ! Sizes known to the compiler spare it the allocation of results.
+      if (n == 3) then
+         shape = line_functions(3, s)
+         rise = line_derivatives(3, s)
+      else
+         shape(:2) = line_functions(2, s)
+         rise(:2) = line_derivatives(2, s)
+         shape(3) = 0.0_wp
+         rise(3) = 0.0_wp
+      end if
+   end subroutine edge_functions
 
    !> X(s) - origin = r1 + r2 s + r3 s^2.
    pure subroutine edge_polynomial(x, origin, r)

@@ -3,11 +3,13 @@
 !> of the surface, widens the boxes that are asked for, up to a slack.
 module target_surface
    use kinds, only: int64, wp
+   use segment_projection, only: edge_frame
    use edge_bins, only: edge_bins_type, find_in_box, new_bins
    implicit none
    private
 
-   public :: target_type, new_target, update_target, edges_near, boxes_apart, edge_coordinates
+   public :: target_type, new_target, update_target, edges_near, boxes_apart
+   public :: edge_coordinates, mean_normal
 
    !> An edge moves by no more than this times the largest motion of its nodes.
    real(wp), parameter :: node_share = 1.25_wp
@@ -22,7 +24,7 @@ module target_surface
       integer, allocatable :: nodes(:)           !! nodes of the edges, ascending
       integer, allocatable :: leaving(:)         !! (n_nodes) edge a node is first or middle of
       integer, allocatable :: arriving(:)        !! (n_nodes) edge a node is last or middle of
-      real(wp) :: overhang = 1.0e-6_wp           !! of an open end that still holds, in edge lengths
+      real(wp) :: overhang = 0.1_wp              !! of an open end that still holds, in edge lengths
       integer(int64) :: n_tests = 0              !! edges that a node was compared with so far
       integer(int64) :: n_builds = 0             !! of the bins
       real(wp) :: motion(2) = 0.0_wp             !! mean displacement of the nodes in the step
@@ -126,17 +128,17 @@ contains
       self%n_builds = self%n_builds + 1
    end subroutine build_bins
 
-   !> Edges that may come closer to a box than a reach, or than a share of their own size, now or on
-   !> their way during the step relative to the mean motion: found(:n_found).
-   pure subroutine edges_near(self, low, high, reach, share)
+   !> Edges that may come closer to a box than a reach, now or on their way during the step relative
+   !> to the mean motion: found(:n_found).
+   pure subroutine edges_near(self, low, high, reach)
       type(target_type), intent(inout) :: self
       real(wp), intent(in) :: low(2), high(2)    !! in the positions now
-      real(wp), intent(in) :: reach, share
+      real(wp), intent(in) :: reach
 
       self%n_found = 0
       if (size(self%nodes) == 0) return
       call find_in_box(self%bins, low - self%drift, high - self%drift, &
-            reach + node_share*(self%slack + self%unrest), share, self%found, self%n_found)
+            reach + node_share*(self%slack + self%unrest), self%found, self%n_found)
    end subroutine edges_near
 
    !> True if nodes cannot come closer to the surface than a reach during a step: the boxes of both
@@ -185,6 +187,40 @@ contains
       box(:, 1) = minval(corner, 2)
       box(:, 2) = maxval(corner, 2)
    end function edge_box
+
+   !> Outward unit normal of a surface at a node, the mean of the edges'; zero if the node is not on
+   !> it or at the tip of a crack, where they are opposite.
+   pure function mean_normal(self, x, node) result(normal)
+      type(target_type), intent(in) :: self
+      real(wp), intent(in) :: x(:, :)            !! (2 or 3, n_nodes)
+      integer, intent(in) :: node
+      real(wp) :: normal(2)
+
+      normal = normal_at(self, x, self%leaving(node), node) &
+            + normal_at(self, x, self%arriving(node), node)
+      if (norm2(normal) > 0.1_wp) then
+         normal = normal/norm2(normal)
+      else
+         normal = 0.0_wp
+      end if
+   end function mean_normal
+
+   !> Of one edge at one of its nodes, zero for edge 0.
+   pure function normal_at(self, x, edge, node) result(normal)
+      type(target_type), intent(in) :: self
+      real(wp), intent(in) :: x(:, :)
+      integer, intent(in) :: edge, node
+      real(wp) :: normal(2)
+      real(wp) :: x_edge(2, 3), point(2), tangent(2), stretch, bend, s
+
+      normal = 0.0_wp
+      if (edge == 0) return
+      s = 0.0_wp
+      if (self%edges(1, edge) == node) s = -1.0_wp
+      if (self%edges(2, edge) == node) s = 1.0_wp
+      x_edge = edge_coordinates(self, edge, x)
+      call edge_frame(x_edge(:, :self%n_edge_nodes(edge)), s, point, tangent, normal, stretch, bend)
+   end function normal_at
 
    !> Positions of the nodes of an edge; only the first n_edge_nodes columns count.
    pure function edge_coordinates(self, edge, x) result(x_edge)

@@ -11,8 +11,7 @@
 !> than the reach.
 module weighted_rows
    use kinds, only: wp
-   use topology, only: line_derivatives, line_functions
-   use segment_projection, only: closest_on_edge, cut_edge
+   use segment_projection, only: closest_on_edge, cut_edge, edge_functions
    use target_surface, only: edge_coordinates, target_type
    use edge_overlap, only: find_breaks, find_opposite, set_slave_edge, slave_edge_type
    implicit none
@@ -92,20 +91,19 @@ contains
       integer, intent(in) :: place(:)
       type(sums_type), intent(inout) :: sums
       integer :: opposite, i, j, k
-      real(wp) :: s, ds, shape(3), normal(2), gap, terms(2, 6, 3), x(2, 3), shape_target(3)
+      real(wp) :: s, ds, shape(3), rise(3), normal(2), gap, terms(2, 6, 3), x(2, 3), shape_target(3)
 
       terms = 0.0_wp
       call find_opposite(edge, target, x_now, sum(ends)/2.0_wp, opposite)
       if (opposite > 0) x = edge_coordinates(target, opposite, x_now)
       do i = 1, n_points
          s = (ends(1) + ends(2) + gauss_point(i)*(ends(2) - ends(1)))/2.0_wp
-         shape = 0.0_wp
-         shape(:edge%n) = line_functions(edge%n, s)
-         ds = gauss_weight(i)*(ends(2) - ends(1))/2.0_wp &
-               *norm2(matmul(edge%x(:, :edge%n), line_derivatives(edge%n, s)))
-         associate (whole => sums%whole(place(edge%nodes(:edge%n))))
-            sums%whole(place(edge%nodes(:edge%n))) = whole + ds*shape(:edge%n)
-         end associate
+         call edge_functions(edge%n, s, shape, rise)
+         ds = gauss_weight(i)*(ends(2) - ends(1))/2.0_wp*norm2(matmul(edge%x, rise))
+         do j = 1, edge%n
+            k = place(edge%nodes(j))
+            sums%whole(k) = sums%whole(k) + ds*shape(j)
+         end do
          if (opposite == 0) cycle
          call look_across(edge, x(:, :target%n_edge_nodes(opposite)), shape, normal, gap, &
                shape_target)
@@ -135,7 +133,7 @@ contains
       real(wp), intent(in) :: shape(3)           !! of the slave edge at the point
       real(wp), intent(out) :: normal(2), gap, shape_target(3)
       logical :: found
-      real(wp) :: point(2), s, fraction, reach(2)
+      real(wp) :: rise(3), point(2), s, fraction, reach(2)
 
       point = matmul(edge%x, shape)
       normal = matmul(edge%normal, shape)
@@ -144,8 +142,7 @@ contains
       call cut_edge(x, point + reach, point - reach, s, fraction, found)
       ! Beside the end of the edge by round-off.
       if (.not. found) call closest_on_edge(x, point, s, fraction)
-      shape_target = 0.0_wp
-      shape_target(:size(x, 2)) = line_functions(size(x, 2), s)
+      call edge_functions(size(x, 2), s, shape_target, rise)
       gap = dot_product(normal, point - matmul(x, shape_target(:size(x, 2))))
    end subroutine look_across
 

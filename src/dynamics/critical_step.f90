@@ -6,7 +6,7 @@
 module critical_step
    use kinds, only: wp
    use small_eigen, only: largest_eigenvalue
-   use element_groups, only: group_type
+   use element_groups, only: group_type, group_mass
    use dof_map, only: dof_map_type
    use structure, only: structure_type, least_mass
    implicit none
@@ -62,7 +62,8 @@ contains
    end subroutine find_critical
 
    !> Critical explicit step of each element by itself: on its own lumped mass, or where it has none
-   !> on its share of the masses around; huge where it has no stiffness.
+   !> on its share of the masses around; huge where it has no stiffness, zero where it acts on a
+   !> freedom without any mass.
    subroutine find_own_limits(structure, limits)
       type(structure_type), intent(in) :: structure   !! equations numbered
       real(wp), intent(out) :: limits(:)              !! (n_elements of the model)
@@ -95,7 +96,8 @@ contains
 
       do e = 1, size(group%lm, 2)
          call group%element%largest_stiffness(e, k)
-         call group%element%mass(e, .true., mass)
+         call group_mass(group, e, .true., mass)
+         one%massless_freedom = 0
          used = [(k(i, i) > 0.0_wp, i=1, size(used))]
          rate = 0.0_wp
          if (all([(mass(i, i) > 0.0_wp, i=1, size(used))] .or. .not. used)) then
@@ -111,6 +113,7 @@ contains
          end if
          rate = sqrt(lambda + (rate/2.0_wp)**2) + rate/2.0_wp
          if (rate > 0.0_wp) limits(group%member(e)) = 2.0_wp/rate
+         if (one%massless_freedom > 0) limits(group%member(e)) = 0.0_wp
       end do
    end subroutine limit_group
 

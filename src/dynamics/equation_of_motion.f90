@@ -16,7 +16,7 @@ module equation_of_motion
 
    public :: system_type
    public :: predict_motion, fixed_force, residual, solve_motion, prepare_motion
-   public :: prepare_mass, solve_mass, force_balance, impose, resisting_force
+   public :: prepare_mass, solve_mass, force_balance, impose, resisting_force, settle_massless
 
    !> A structure under the loads and conditions of a step, with its matrices.
    type :: system_type
@@ -109,6 +109,29 @@ contains
       call elastic_force(self%structure, scheme, state%d, history, force, state%history)
       if (.not. self%static) call damping_force(self%structure, scheme, state%v, force)
    end function resisting_force
+
+   !> Freedoms without mass are where forces balance; Newmark's rule knows no velocity of theirs. At
+   !> beta = 1/4 it is 2 (d1 - d0)/dt - v0, which swings for ever while the acceleration grows with
+   !> the steps, and at a smaller beta both grow without bound. Gives them the mean velocity of the
+   !> step and no acceleration; nothing else of the motion depends on these but damping.
+   pure subroutine settle_massless(self, from, to)
+      type(system_type), intent(in) :: self
+      type(state_type), intent(in) :: from       !! at the start of a step or part of one
+      type(state_type), intent(inout) :: to      !! at its end
+      integer :: f
+
+      if (self%static .or. .not. to%t > from%t .or. .not. any(self%massless)) return
+      associate (map => self%structure%map)
+         do f = 1, map%n_freedoms
+            if (map%id(map%dof(f), map%node(f)) == 0) cycle
+            if (.not. self%massless(map%id(map%dof(f), map%node(f)))) cycle
+            to%v(f) = (to%d(f) - from%d(f))/(to%t - from%t)
+            to%a(f) = 0.0_wp
+         end do
+         call follow_constraints(map, to%v)
+         call follow_constraints(map, to%a)
+      end associate
+   end subroutine settle_massless
 
    !> f - C v - S(d) at a state, all groups.
    function force_balance(self, state) result(force)

@@ -7,8 +7,7 @@ module constrained_step
    use dof_map, only: reduce
    use motion_state, only: newmark_type, state_type, correct
    use equation_of_motion, only: system_type, predict_motion, fixed_force, residual, &
-         solve_motion, prepare_motion
-   use constraint_rows, only: row_curvature
+         solve_motion, prepare_motion, settle_massless
    use impact_scene, only: scene_type, contact_motion_type, record_residual, note_contact_force
    use step_contact, only: contact_step_type, add_contact_forces, smallest_beta
    use row_placement, only: place_rows
@@ -47,7 +46,7 @@ contains
       to = from
       call predict_motion(scene%system, from%motion, dt, beta, to%motion)
       fixed = fixed_force(scene%system, from%motion, to%motion)
-      call describe_step(scene, from, dt, beta, step, held)
+      call describe_step(scene, dt, beta, step, held)
       reference = 0.0_wp
       left = huge(left)
       do iteration = 1, scene%system%max_iterations
@@ -61,30 +60,27 @@ contains
          if (allocated(error)) return
          call correct(newmark, dt, delta, to%motion)
          call note_contact_force(scene, to)
-         if (scene%system%structure%is_linear) return
+         converged = scene%system%structure%is_linear
+         if (converged) exit
          reference = max(reference, norm2(psi), norm2(fixed))
          converged = has_converged(scene, fixed, from, to, delta, reference, left)
          call record_residual(scene, iteration, left/max(reference, tiny(1.0_wp)))
-         if (converged) return
+         if (converged) exit
       end do
-      call not_converged(scene, to%motion%t, error)
+      if (.not. converged) call not_converged(scene, to%motion%t, error)
+      call settle_massless(scene%system, from%motion, to%motion)
    end subroutine advance_smoothly
 
    !> What contact needs to know of a dynamic step.
-   subroutine describe_step(scene, from, dt, beta, step, held)
+   subroutine describe_step(scene, dt, beta, step, held)
       type(scene_type), intent(in) :: scene
-      type(contact_motion_type), intent(in) :: from
       real(wp), intent(in) :: dt, beta
       type(contact_step_type), intent(out) :: step
       logical, intent(in), optional :: held(:)
-      type(state_type) :: ahead
 
       step%to_displacement = max(beta, smallest_beta)*dt**2
       step%to_velocity = scene%system%newmark%gamma*dt
       if (present(held)) step%held = held
-      ahead = from%motion
-      ahead%v = ahead%v + dt*ahead%a
-      step%curvature = row_curvature(scene%rows, ahead)
    end subroutine describe_step
 
    !> Newton's method has converged when both the correction and the residual are small, or when the

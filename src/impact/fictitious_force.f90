@@ -54,7 +54,8 @@ contains
       type(contact_motion_type) :: next
       logical :: ending(scene%rows%n)
 
-      call rows_ahead(scene, motion, dt)
+      call rows_ahead(scene, motion, dt, error)
+      if (allocated(error)) return
       call advance_smoothly(scene, motion, dt, scene%system%newmark%beta, next, error)
       if (allocated(error)) return
       call accept_span(scene, motion, next)

@@ -80,6 +80,7 @@ module impact_scene
       type(event_type), allocatable :: events(:) !! grown by doubling
       integer :: n_events = 0                    !! since the last time they were fetched
       real(wp), allocatable :: impulse(:)        !! (n_rows) of the increment at hand
+      real(wp), allocatable :: curvature(:)      !! (n_rows) part of the gap acceleration at its end
       integer :: n_residuals = 0                 !! Newton iterations of the last solution
       real(wp) :: residuals(max_residuals) = 0.0_wp   !! after each, of the largest force
       integer(int64) :: n_iterations = 0         !! of Newton's method and of the fictitious force

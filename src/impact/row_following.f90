@@ -4,11 +4,12 @@ module row_following
    use kinds, only: wp
    use errors, only: error_type
    use motion_state, only: state_type
-   use constraint_rows, only: row_gaps, row_rates, rate_size
+   use constraint_rows, only: row_gaps, row_rates, row_curvature, rate_size
    use row_placement, only: place_rows
    use impact_scene, only: scene_type, contact_motion_type, event_type, record_event, &
          event_release, rate_tolerance
    use contact_impulses, only: project_touching
+   use constrained_step, only: advance_smoothly
    implicit none
    private
 
@@ -22,19 +23,30 @@ module row_following
 
 contains
 
-   !> Rows where the motion will be after dt as it goes now.
-   subroutine rows_ahead(scene, motion, dt)
+   !> Rows where the motion will be after dt: as its velocity goes, and with rows in contact where a
+   !> trial step has taken it. (Accelerations of stiff elements swing from step to step and lead
+   !> nowhere.)
+   subroutine rows_ahead(scene, motion, dt, error)
       type(scene_type), intent(inout) :: scene
       type(contact_motion_type), intent(in) :: motion
       real(wp), intent(in) :: dt
+      type(error_type), allocatable, intent(out) :: error
       type(state_type) :: ahead
+      type(contact_motion_type) :: trial
 
       if (.not. scene%rows%moving) return
       ahead = motion%motion
       ahead%t = ahead%t + dt
-      ahead%d = ahead%d + dt*ahead%v + dt**2/2.0_wp*ahead%a
+      ahead%d = ahead%d + dt*ahead%v
       call place_rows(scene%rows, scene%geometry, scene%system%structure%map, motion%motion, ahead, &
             reach(scene, motion, dt))
+      scene%curvature = row_curvature(scene%rows, ahead)
+      if (.not. any(motion%touching)) return
+      call advance_smoothly(scene, motion, dt, scene%system%newmark%beta, trial, error)
+      if (allocated(error)) return
+      call place_rows(scene%rows, scene%geometry, scene%system%structure%map, motion%motion, &
+            trial%motion, reach(scene, motion, dt))
+      scene%curvature = row_curvature(scene%rows, trial%motion)
    end subroutine rows_ahead
 
    !> Rows where the motion is.

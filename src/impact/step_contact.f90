@@ -23,7 +23,6 @@ module step_contact
       real(wp) :: to_velocity = 1.0_wp           !! gamma h
       logical, allocatable :: held(:)            !! (n_rows) touching rows, held bilaterally; if not
                                                  !! allocated their forces push only
-      real(wp), allocatable :: curvature(:)      !! (n_rows) part of the gap acceleration
    end type contact_step_type
 
    !> Explicit steps (beta = 0) find penalty forces from the predictor: as with so small a beta.
@@ -157,7 +156,7 @@ contains
       on = on_displacement(scene, step) .and. .not. to%touching
       motion = merge(row_gaps(scene%rows, to%motion)/step%to_displacement, &
             row_accelerations(scene%rows, to%motion%a), on)
-      if (.not. step%static) motion = motion + merge(0.0_wp, step%curvature, on)
+      if (.not. step%static) motion = motion + merge(0.0_wp, scene%curvature, on)
       motion = motion + row_accelerations(scene%rows, delta)
    end function normal_motion
 

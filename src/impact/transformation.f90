@@ -87,7 +87,8 @@ contains
       progress%t_end = motion%motion%t + dt
       progress%remaining = dt
       progress%beta = scene%system%newmark%beta
-      call rows_ahead(scene, motion, dt)
+      call rows_ahead(scene, motion, dt, error)
+      if (allocated(error)) return
       do while (progress%remaining > time_tolerance*dt)
          progress%at_limit = progress%n_events >= scene%settings%max_events
          call smooth_span(scene, motion, progress, span, next, release, error)

@@ -10,6 +10,7 @@ module scene_setup
    use steps, only: step_type, procedure_static, procedure_dynamic, procedure_frequency
    use histories, only: boundary_type, nodal_value_type
    use structure, only: structure_type, new_structure, freedom_name, diagonal_mass
+   use redistributed_mass, only: mark_contact_nodes
    use equation_order, only: ordering_type, order_equations
    use external_load, only: begin_loads
    use prescribed_motion, only: begin_motions, start_motions, prescribed_freedoms
@@ -66,6 +67,7 @@ contains
       call make_impact_method(self%model, self%contact, self%method, self%scene%settings, error)
       if (allocated(error)) return
       self%scene%impulse = [(0.0_wp, i=1, self%scene%rows%n)]
+      self%scene%curvature = self%scene%impulse
       call check_freedoms_named(self, error)
       if (allocated(error)) return
       call initial_motion(self, error)
@@ -340,7 +342,7 @@ contains
          if (limit%massless_freedom > 0) then
             call fail_at(error, self%model%source, step%procedure_place, &
                   freedom_name(structure, limit%massless_freedom)//' is explicit and has no mass', &
-                  'give it a mass, or make its elements implicit with *ELEMENT GROUP')
+                  cure_of_no_mass(self%model, structure%map%node(limit%massless_freedom)))
          else if (step%dt*(1.0_wp - slack) > limit%step) then
             culprit = ''
             if (limit%element > 0) culprit = ' of explicit element ' &
@@ -357,5 +359,18 @@ contains
          end if
       end associate
    end subroutine check_critical
+
+   !> What helps an explicit node without mass.
+   function cure_of_no_mass(model, node) result(cure)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: node
+      character(len=:), allocatable :: cure
+      logical :: contact(model%nodes%n)
+
+      call mark_contact_nodes(model, contact)
+      cure = 'give it a mass, or make its elements implicit with *ELEMENT GROUP'
+      if (contact(node)) cure = 'MASS=REDISTRIBUTED takes the mass off contact nodes: make the ' &
+            //'elements along the contact surfaces implicit with *ELEMENT GROUP, or leave it out'
+   end function cure_of_no_mass
 
 end module scene_setup

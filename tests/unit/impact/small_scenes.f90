@@ -47,6 +47,7 @@ contains
       if (allocated(error)) return
       if (present(method)) call move_alloc(made, method)
       scene%impulse = [(0.0_wp, i=1, scene%rows%n)]
+      scene%curvature = scene%impulse
       call new_contact_motion(motion, scene%system%structure%map%n_freedoms, scene%rows%n, &
             scene%system%structure%n_history)
       call open_ledger(scene%ledger, scene%system, motion%motion)
