@@ -5,20 +5,24 @@ from carom_case import Checks
 from contact_case import Folder
 
 folder = Folder('pounding_frame', 'make_frames')
-UNTIL = 1.5
+TIMES = (0.4, 0.6, 1.0)
 
 
 def figures(contact, name):
-    nodes = [key for key in contact.run.file['history'] if key.startswith('node_')]
-    u = [contact.run[f'history/{key}/U1'] for key in nodes]
-    early = contact.time <= UNTIL
-    impulse = np.cumsum(contact.impulse)
-    hits = contact.moments('impact')
-    found = {'first': hits[0], 'before': impulse[early][-1], 'impulse': impulse[-1],
-             'peaks': [np.abs(values[early]).max() for values in u]}
-    print(f'        {name}: first blow at {found["first"]:.5f}, instants of impact {len(hits)}, impulse '
-          f'until {UNTIL} {found["before"]:.4f}, in all {found["impulse"]:.4f}, largest displacements '
-          + ' '.join(f'{1e3 * value:.4f}' for value in found['peaks'])
+    x = contact.run['VTKHDF/Points'][:, 0]
+    ids = contact.run['model/node_id'].tolist()
+    peaks = {}
+    for key in contact.run.file['history']:
+        if key.startswith('node_'):
+            side = 'left' if x[ids.index(int(key[5:]))] < 0 else 'right'
+            peaks[side] = np.abs(contact.run[f'history/{key}/U1']).max()
+    impulse = np.cumsum(np.abs(contact.impulse))
+    found = {'first': contact.moments('impact')[0], 'peaks': [peaks['left'], peaks['right']],
+             'impulses': [impulse[contact.time <= t + 1e-9][-1] for t in TIMES]}
+    print(f'        {name}: first blow at {found["first"]:.5f}, instants of impact '
+          f'{len(contact.moments("impact"))}, impulses until {TIMES}: '
+          + ' '.join(f'{value:.3f}' for value in found['impulses']) + ', largest displacements '
+          + ' '.join(f'{1e3 * value:.3f}' for value in found['peaks'])
           + f' mm, smallest gap {contact.gap.min():.2g}, balance '
           f'{contact.balance / contact.energy.max():.2g}')
     return found
@@ -27,12 +31,11 @@ def figures(contact, name):
 checks = Checks()
 folder.check(checks)
 coarse = folder.run('frames.inp')
-fine = folder.run(folder.make.deck('fine', folder.make.mesh(2)), dt=2.5e-4)
+fine = folder.run(folder.make.deck('fine', folder.make.mesh(3)), dt=5e-4)
 one, two = figures(coarse, 'as committed'), figures(fine, 'fine')
 checks.close(one['first'], two['first'], 2e-3, 'time of the first blow')
-checks.close(one['before'] / two['before'], 1.0, 0.05, f'impulse until {UNTIL}')
-checks.close(np.array(one['peaks']) / two['peaks'], np.ones(len(one['peaks'])), 0.02,
-             'largest displacements')
+checks.close(np.array(one['impulses']) / two['impulses'], np.ones(len(TIMES)), 0.03, 'impulses')
+checks.close(np.array(one['peaks']) / two['peaks'], np.ones(2), 0.03, 'largest displacements')
 checks.at_least(coarse.gap.min(), -1e-8 * 0.4, 'smallest gap')
-checks.at_most(coarse.balance / coarse.energy.max(), 1e-9, 'balance of energy')
+checks.at_most(coarse.balance / coarse.energy.max(), 1e-4, 'balance of energy')
 checks.finish()
