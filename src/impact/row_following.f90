@@ -46,8 +46,34 @@ contains
       if (allocated(error)) return
       call place_rows(scene%rows, scene%geometry, scene%system%structure%map, motion%motion, &
             trial%motion, reach(scene, motion, dt))
-      scene%curvature = row_curvature(scene%rows, trial%motion)
+      call find_curvature(scene, motion, trial%motion, dt)
    end subroutine rows_ahead
+
+   !> The part of gap accelerations that comes from rows turning: in closed form for a node on an
+   !> edge, by a difference along the motion for rows weighted over edges.
+   subroutine find_curvature(scene, motion, ahead, dt)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(in) :: motion
+      type(state_type), intent(in) :: ahead      !! where the rows have been placed
+      real(wp), intent(in) :: dt
+      real(wp), parameter :: part = 0.1_wp       !! of the step
+      type(state_type) :: further
+      real(wp) :: rates(scene%rows%n)
+      logical :: weighted(scene%rows%n)
+
+      scene%curvature = row_curvature(scene%rows, ahead)
+      weighted = scene%rows%weight > 0.0_wp
+      if (.not. any(weighted)) return
+      rates = row_rates(scene%rows, ahead)
+      further = ahead
+      further%d = ahead%d + part*dt*ahead%v
+      call place_rows(scene%rows, scene%geometry, scene%system%structure%map, ahead, further, &
+            reach(scene, motion, dt))
+      where (weighted .and. scene%rows%facing) scene%curvature &
+            = (row_rates(scene%rows, ahead) - rates)/(part*dt)
+      call place_rows(scene%rows, scene%geometry, scene%system%structure%map, motion%motion, ahead, &
+            reach(scene, motion, dt))
+   end subroutine find_curvature
 
    !> Rows where the motion is.
    subroutine rows_here(scene, motion, dt)
