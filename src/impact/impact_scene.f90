@@ -87,6 +87,7 @@ module impact_scene
       integer :: n_residuals = 0                 !! Newton iterations of the last solution
       real(wp) :: residuals(max_residuals) = 0.0_wp   !! after each, of the largest force
       integer(int64) :: n_iterations = 0         !! of Newton's method and of the fictitious force
+      integer(int64) :: n_cycles = 0             !! of them that did not settle on a set of rows
    end type scene_type
 
 contains

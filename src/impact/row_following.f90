@@ -13,7 +13,7 @@ module row_following
    implicit none
    private
 
-   public :: rows_ahead, rows_here, settle_rows
+   public :: rows_ahead, rows_at, rows_here, settle_rows
 
    !> A node looks for partners as far as this multiple of the largest motion in the step.
    real(wp), parameter :: reach_factor = 4.0_wp
@@ -44,10 +44,46 @@ contains
       if (.not. any(motion%touching)) return
       call advance_smoothly(scene, motion, dt, scene%system%newmark%beta, trial, error)
       if (allocated(error)) return
-      call place_rows(scene%rows, scene%geometry, scene%system%structure%map, motion%motion, &
-            trial%motion, reach(scene, motion, dt))
-      scene%curvature = row_curvature(scene%rows, trial%motion)
+      call rows_at(scene, motion, trial, dt)
    end subroutine rows_ahead
+
+   !> Rows where a motion has led to.
+   subroutine rows_at(scene, from, to, dt)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(in) :: from, to
+      real(wp), intent(in) :: dt                 !! of a step, for how far rows look for partners
+
+      if (.not. scene%rows%moving) return
+      call place_rows(scene%rows, scene%geometry, scene%system%structure%map, from%motion, &
+            to%motion, reach(scene, from, dt))
+      call find_curvature(scene, from, to%motion, dt)
+   end subroutine rows_at
+
+   !> The part of gap accelerations that comes from rows turning: in closed form for a node on an
+   !> edge, by a difference along the motion for rows weighted over edges.
+   subroutine find_curvature(scene, motion, ahead, dt)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(in) :: motion
+      type(state_type), intent(in) :: ahead      !! where the rows have been placed
+      real(wp), intent(in) :: dt
+      real(wp), parameter :: part = 0.1_wp       !! of the step
+      type(state_type) :: further
+      real(wp) :: rates(scene%rows%n)
+      logical :: weighted(scene%rows%n)
+
+      scene%curvature = row_curvature(scene%rows, ahead)
+      weighted = scene%rows%weight > 0.0_wp
+      if (.not. any(weighted)) return
+      rates = row_rates(scene%rows, ahead)
+      further = ahead
+      further%d = ahead%d + part*dt*ahead%v
+      call place_rows(scene%rows, scene%geometry, scene%system%structure%map, ahead, further, &
+            reach(scene, motion, dt))
+      where (weighted .and. scene%rows%facing) scene%curvature &
+            = (row_rates(scene%rows, ahead) - rates)/(part*dt)
+      call place_rows(scene%rows, scene%geometry, scene%system%structure%map, motion%motion, ahead, &
+            reach(scene, motion, dt))
+   end subroutine find_curvature
 
    !> Rows where the motion is.
    subroutine rows_here(scene, motion, dt)
