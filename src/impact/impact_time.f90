@@ -19,6 +19,7 @@ module impact_time
       logical, allocatable :: held(:)        !! (n_rows) rows held bilaterally in every trial
       real(wp), allocatable :: gaps(:)       !! (n_rows) at the start, by rows at their places there
       real(wp) :: gap_limit = 0.0_wp         !! smaller gaps are round-off
+      real(wp) :: found_limit = 0.0_wp       !! smaller gaps are near enough to an impact
       real(wp) :: rate_limit = 0.0_wp        !! smaller gap rates are round-off
    end type span_type
 
@@ -235,7 +236,7 @@ contains
             tau = x
             at = trial
          end if
-         if (best <= span%gap_limit) exit
+         if (best <= span%found_limit) exit
          call tighten(bracket, x, gap)
          if (bracket%high - bracket%low <= width_limit*span%dt) exit
       end do

@@ -218,7 +218,7 @@ contains
       do i = 1, max_refinements
          call rows_at(scene, motion, at, span%dt)
          gaps = row_gaps(scene%rows, at%motion)
-         if (tau > 0.0_wp .and. abs(minval(gaps(hits%row(:hits%n)))) <= span%gap_limit) exit
+         if (tau > 0.0_wp .and. abs(minval(gaps(hits%row(:hits%n)))) <= span%found_limit) exit
          if (.not. max(tau, before) > 0.0_wp .and. i > 1) exit
          before = tau
          call advance_smoothly(scene, motion, span%dt, span%beta, next, error, span%held)
