@@ -32,7 +32,7 @@ module transformation
    real(wp), parameter :: time_tolerance = 1.0e-13_wp
 
    !> Rows are placed so often at an impact until it stays where it is.
-   integer, parameter :: max_refinements = 12
+   integer, parameter :: max_refinements = 60
 
    !> beta of the impact step by the thesis.
    real(wp), parameter :: thesis_beta = 1.0_wp/6.0_wp
@@ -197,8 +197,8 @@ contains
    end subroutine find_impact
 
    !> Places sliding rows where the impact was found and looks for it again, until it stays: Newton's
-   !> method on the true gap. Lost is an impact that the rows at its own place do not show; the span
-   !> then ends there without one.
+   !> method on the true gap, with bisection where the rows at hand lead out of the bracket. Lost is
+   !> an impact that is none: the span then ends without one.
    subroutine refine_impact(scene, motion, span, hits, tau, at, lost, error)
       type(scene_type), intent(inout) :: scene
       type(contact_motion_type), intent(in) :: motion
@@ -208,37 +208,61 @@ contains
       type(contact_motion_type), intent(inout) :: at
       logical, intent(out) :: lost
       type(error_type), allocatable, intent(out) :: error
-      type(contact_motion_type) :: next
-      type(hits_type) :: found
-      real(wp) :: gaps(scene%rows%n), rates(scene%rows%n), before
+      logical :: suspect(scene%rows%n)
+      real(wp) :: low, high, gap
       integer :: i
 
-      lost = .false.
-      before = -1.0_wp
+      low = 0.0_wp
+      high = span%dt
+      suspect = .false.
       do i = 1, max_refinements
+         suspect(hits%row(:hits%n)) = .true.
          call rows_at(scene, motion, at, span%dt)
-         gaps = row_gaps(scene%rows, at%motion)
-         if (tau > 0.0_wp .and. abs(minval(gaps(hits%row(:hits%n)))) <= span%gap_limit) exit
-         if (.not. max(tau, before) > 0.0_wp .and. i > 1) exit
-         before = tau
-         call advance_smoothly(scene, motion, span%dt, span%beta, next, error, span%held)
-         if (allocated(error)) return
-         call find_hits(scene, motion, next, span, found, error)
-         if (allocated(error)) return
-         lost = found%n == 0
-         if (lost) exit
-         hits = found
-         call find_impact(scene, motion, next, span, hits, tau, at, error)
+         gap = minval(row_gaps(scene%rows, at%motion), mask=suspect)
+         if (abs(gap) <= span%gap_limit .and. (tau > 0.0_wp .or. i > 1)) exit
+         if (gap < 0.0_wp) high = tau
+         if (gap > 0.0_wp) low = tau
+         if (high - low <= time_tolerance*span%dt) exit
+         call look_again(scene, motion, span, [low, high], hits, tau, at, error)
          if (allocated(error)) return
       end do
-      if (lost .and. .not. tau > 0.0_wp) then
-         rates = row_rates(scene%rows, motion%motion)
-         lost = minval(rates(hits%row(:hits%n))) > span%rate_limit
-         if (lost) tau = span%dt/2.0_wp
-      end if
+      lost = gap > span%gap_limit*(merge_gap_tolerance/gap_tolerance)
       if (.not. tau > 0.0_wp) return
       call advance_smoothly(scene, motion, tau, span%beta, at, error, span%held)
    end subroutine refine_impact
+
+   !> The earliest impact by the rows as they have been placed now, in a bracket.
+   subroutine look_again(scene, motion, span, bracket, hits, tau, at, error)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(in) :: motion
+      type(span_type), intent(in) :: span
+      real(wp), intent(in) :: bracket(2)
+      type(hits_type), intent(inout) :: hits     !! as before where nothing is found
+      real(wp), intent(inout) :: tau
+      type(contact_motion_type), intent(inout) :: at
+      type(error_type), allocatable, intent(out) :: error
+      type(contact_motion_type) :: next
+      type(hits_type) :: found
+      real(wp) :: gaps(scene%rows%n)
+      logical :: good
+
+      call advance_smoothly(scene, motion, span%dt, span%beta, next, error, span%held)
+      if (allocated(error)) return
+      call find_hits(scene, motion, next, span, found, error)
+      if (allocated(error)) return
+      good = found%n > 0
+      if (good) then
+         hits = found
+         call find_impact(scene, motion, next, span, hits, tau, at, error)
+         if (allocated(error) .or. .not. tau > 0.0_wp) return
+         gaps = row_gaps(scene%rows, at%motion)
+         good = tau > bracket(1) .and. tau < bracket(2) .and. minval(abs(gaps(hits%row(:hits%n)))) &
+               <= span%gap_limit*(merge_gap_tolerance/gap_tolerance)
+      end if
+      if (good) return
+      tau = sum(bracket)/2.0_wp
+      call advance_smoothly(scene, motion, tau, span%beta, at, error, span%held)
+   end subroutine look_again
 
    !> Which rows take part in the impact: all that close and are at the wall now, or will be within
    !> the merging time; rows at rest that are pressed against the wall are captured without impact.
