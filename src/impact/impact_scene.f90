@@ -5,9 +5,10 @@ module impact_scene
    use surfaces, only: beta_automatic
    use motion_state, only: state_type
    use equation_of_motion, only: system_type
-   use energy_ledger, only: ledger_type, record_span, record_friction
+   use energy_ledger, only: ledger_type, record_span, record_impact, record_friction
    use contact_geometry, only: contact_geometry_type
-   use constraint_rows, only: rows_type, row_accelerations, contact_forces, slip_increments
+   use constraint_rows, only: rows_type, row_accelerations, contact_forces, slip_increments, &
+         wall_work
    implicit none
    private
 
@@ -148,11 +149,16 @@ contains
       type(scene_type), intent(inout) :: scene
       type(contact_motion_type), intent(in) :: from
       type(contact_motion_type), intent(inout) :: to
-      real(wp) :: slip(scene%rows%n)
+      real(wp) :: slip(scene%rows%n), work
 
       call record_span(scene%ledger, scene%system, from%motion, to%motion, from%force, to%force)
       scene%impulse = scene%impulse &
             + (to%motion%t - from%motion%t)*(from%lambda + to%lambda)/2.0_wp
+      if (any(scene%rows%amplitude > 0)) then
+         work = wall_work(scene%rows, from%motion, to%motion, (from%lambda + to%lambda)/2.0_wp, &
+               (from%tau + to%tau)/2.0_wp)
+         call record_impact(scene%ledger, work, work)
+      end if
       if (.not. any(scene%rows%friction > 0.0_wp)) return
       slip = slip_increments(scene%rows, from%motion, to%motion)
       call record_friction(scene%ledger, -dot_product(slip, from%tau + to%tau)/2.0_wp)

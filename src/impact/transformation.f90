@@ -284,7 +284,8 @@ contains
       impact%plastic = progress%at_limit
       impact%rate_limit = rate_tolerance*rate_size(scene%rows, motion%motion)
       impact%new = may_hit(scene%rows) .and. .not. motion%touching .and. &
-            rates < -impact%rate_limit .and. (gaps <= span%gap_limit*(merge_gap_tolerance/gap_tolerance) .or. &
+            rates < -impact%rate_limit .and. &
+            (gaps <= span%gap_limit*(merge_gap_tolerance/gap_tolerance) .or. &
             gaps <= -merge_time_tolerance*progress%dt*rates)
       ! an impact elsewhere may push a row at the wall; without a rebound of its own it answers at
       ! once

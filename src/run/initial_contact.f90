@@ -297,7 +297,8 @@ contains
       if (gaps(worst) >= -limit) return
       call fail_at(error, model%source, list%rows(worst)%place, &
             overlap_text(list, scene, &
-            merge(gaps, 0.0_wp, list%rows%pair == list%rows(worst)%pair), limit), overlap_cure(model, list%rows(worst)%model_pair))
+            merge(gaps, 0.0_wp, list%rows%pair == list%rows(worst)%pair), limit), &
+            overlap_cure(model, list%rows(worst)%model_pair))
    end subroutine check_overlaps
 
    function overlap_text(list, scene, gaps, limit) result(cause)
