@@ -1,16 +1,18 @@
-"""A moving picture of a run: animate.py RESULT.h5 [--scale 1] [--every 1] [--fps 25] [-o x.mp4]
+"""A moving picture of a run: animate.py RESULT.h5 [--field MISES] [--scale 1] [--fps 25] [-o x.mp4]
 
-Draws the frames of /VTKHDF in the x-y plane, points + scale * U, solids filled. Rigid planes
-appear if the file has them, gap elements as thin lines, supports as grey squares, and where an
-impact has just happened the node is red. Writes a GIF, or with -o NAME.mp4 an MP4 film (needs
-ffmpeg).
+Draws the frames of /VTKHDF in the x-y plane, points + scale * U, solids filled: with --field in
+the colours of a field such as MISES, S22, V (its size) or V1. Rigid planes and circles appear if
+the file has them, gap elements as thin lines, supports as grey squares, and where an impact has
+just happened the node is red. Writes a GIF, or with -o NAME.mp4 an MP4 film (needs ffmpeg).
 """
 
 import os
 
 import numpy as np
-from carom_mesh import VERTEX, Mesh
-from carom_results import BLACK, BLUE, ORANGE, RED, SKY, Results, ScriptError, make_parser, plt, run
+from carom_mesh import CORNERS, VERTEX, Mesh
+from carom_results import (
+    BLACK, BLUE, ORANGE, RED, SKY, Results, ScriptError, axis_label, make_parser, plt, quantity, run,
+)
 from matplotlib import animation
 from matplotlib.collections import LineCollection, PolyCollection
 
@@ -29,6 +31,8 @@ class Film:
         self.events = results.events()
         planes = self.file.get("model/rigid_planes")
         self.planes = np.zeros((0, 6)) if planes is None else np.atleast_2d(planes[()])
+        circles = self.file.get("model/rigid_circles")
+        self.circles = np.zeros((0, 4)) if circles is None else np.atleast_2d(circles[()])
         ids = self.file.get("model/node_id")
         self.point_of = {} if ids is None else {node: i for i, node in enumerate(ids[()].tolist())}
         self.gaps = mesh.lines(False)[1]
@@ -46,6 +50,18 @@ class Film:
         if "CellData/S" not in self.mesh.grid or not len(self.lines):
             return None
         return self.mesh.component("Cell", "S11", frame)[self.line_cells]
+
+    def field(self, name, frame):
+        """The values of a field in the solids, a list with an array a type: the mean of each."""
+        values = self.mesh.component("Cell", name, frame)
+        if values is not None:
+            return [values[self.mesh.block(kind)[0]] for kind in self.solids]
+        values = self.mesh.component("Point", name, frame)
+        if values is None:
+            raise ScriptError(f"'{self.mesh.path}' has no field {name}; "
+                              f"there are: {', '.join(self.mesh.fields())}")
+        return [values[self.mesh.block(kind)[1][:, : CORNERS[kind]]].mean(axis=1)
+                for kind in self.solids]
 
     def hits(self, frame, before):
         """Points with an impact since a frame before; of a gap element, both of its points."""
@@ -102,11 +118,27 @@ def draw_planes(axes, film, low, high):
         axes.plot(*ends.T, color="0.4", lw=1.5, zorder=1)
 
 
+def draw_circles(axes, film, low, high):
+    """Each rigid circle as an edge, grey where it is solid; a negative radius: outside of it."""
+    corners = np.array([low, (high[0], low[1]), high, (low[0], high[1])])
+    for x, y, _, radius in film.circles:
+        angle = np.linspace(0, 2 * np.pi, 361)
+        rim = np.stack((x + radius * np.cos(angle), y + radius * np.sin(angle)), axis=1)
+        if radius > 0:
+            axes.fill(*rim.T, color="0.8", zorder=0)
+        else:
+            box = 2 * corners - corners.mean(axis=0)
+            both = np.vstack((box, box[:1], rim[::-1], box[:1]))
+            axes.fill(*both.T, color="0.8", zorder=0)
+        axes.plot(*rim.T, color="0.4", lw=1.5, zorder=1)
+
+
 class Picture:
     """The drawn frame, updated in place."""
 
-    def __init__(self, film, frames):
+    def __init__(self, film, frames, field=None):
         self.film = film
+        self.field = field
         low, high = film.limits(frames)
         width, height = high - low
         aspect = height / width
@@ -121,11 +153,16 @@ class Picture:
         self.axes.set_ylabel("y")
         self.axes.grid(False)
         draw_planes(self.axes, film, low, high)
+        draw_circles(self.axes, film, low, high)
         few = len(film.points) <= 60
         width = 0.6 if film.n_solids <= 200 else 0.25 if film.n_solids <= 5000 else 0.0
-        self.faces = [PolyCollection([], facecolor=SKY, edgecolor=BLACK if width else SKY, lw=width)
+        rest = SKY if field is None else "face"
+        face = {"facecolor": SKY} if field is None else {}
+        self.faces = [PolyCollection([], edgecolor=BLACK if width else rest, lw=width or 0.3, **face)
                       for _ in film.solids]
-        self.stressed = film.stress(frames[0]) is not None
+        if field is not None:
+            self.show_field(frames)
+        self.stressed = field is None and film.stress(frames[0]) is not None
         colour = {} if self.stressed else {"color": BLUE}
         self.lines = LineCollection([], lw=3.0 if few else 2.0, **colour)
         self.gaps = LineCollection([], color="0.6", lw=1.0, linestyles="dotted", zorder=1)
@@ -144,6 +181,34 @@ class Picture:
         self.dots = self.axes.scatter([], [], s=size, color=BLUE, edgecolor=BLACK, zorder=3)
         self.flash = self.axes.scatter([], [], s=260, color=ORANGE, alpha=0.6, lw=0, zorder=2.5)
         self.title = self.axes.set_title("")
+
+    def show_field(self, frames):
+        """Solids in the colours of a field, the same in all frames."""
+        film = self.film
+        if not film.n_solids:
+            raise ScriptError("--field needs solids")
+        looked_at = frames[:: max(1, len(frames) // 60)] + [frames[-1]]
+        shown = np.concatenate([np.concatenate(film.field(self.field, f)) for f in looked_at])
+        if not np.isfinite(shown).all():
+            raise ScriptError(f"'{film.mesh.path}': {self.field} has values that are no numbers")
+        # a few points of concentrated stress would leave all else in one colour
+        low, high = (float(value) for value in np.quantile(shown, (0.002, 0.998)))
+        style = {"cmap": "viridis"}
+        if low < 0 < high and min(-low, high) > 0.05 * max(-low, high):
+            low, high = -max(-low, high), max(-low, high)
+            style = {"cmap": "coolwarm"}
+        if high - low <= 1e-12 * max(abs(low), abs(high), 1e-300):
+            low, high = low - 1.0, high + 1.0
+        for faces in self.faces:
+            faces.set(clim=(low, high), **style)
+        self.figure.subplots_adjust(right=0.84)
+        box = self.axes.get_position()
+        place = self.figure.add_axes((0.86, box.y0, 0.02, box.height))
+        bar = self.figure.colorbar(self.faces[0], cax=place, extend="both")
+        words = "Mises stress" if self.field == "MISES" else axis_label(quantity(self.field))
+        if words.endswith(quantity(self.field)):
+            words = words[: -len(quantity(self.field))] + self.field
+        bar.set_label(words)
 
     def show_stress(self, frames):
         """Lines in the colour of their stress, if the file has it."""
@@ -164,6 +229,9 @@ class Picture:
         place = self.film.place(frame)
         for kind, faces in zip(self.film.solids, self.faces):
             faces.set_verts(self.film.mesh.outlines(kind, place, 4))
+        if self.field is not None:
+            for faces, values in zip(self.faces, self.film.field(self.field, frame)):
+                faces.set_array(values)
         self.lines.set_segments(place[self.film.lines])
         if self.stressed:
             self.lines.set_array(self.film.stress(frame))
@@ -194,6 +262,7 @@ def writer_for(path, fps):
 def main():
     parser = make_parser(__doc__)
     parser.add_argument("result", help="result file of carom")
+    parser.add_argument("--field", help="colours of the solids: MISES, S11, V, V1, U, ...")
     parser.add_argument("--scale", type=float, default=1.0, help="factor on the displacements (1)")
     parser.add_argument("--every", type=int, help=f"every n-th frame (so that <= {MOST_FRAMES})")
     parser.add_argument("--fps", type=float, default=25.0, help="pictures a second (25)")
@@ -206,7 +275,7 @@ def main():
         film = Film(results, given.scale)
         every = given.every or -(-film.n_frames // MOST_FRAMES)
         frames = list(range(0, film.n_frames, every))
-        picture = Picture(film, frames)
+        picture = Picture(film, frames, given.field and given.field.upper())
         try:
             with writer.saving(picture.figure, path, dpi=90):
                 for before, frame in zip([0] * FLASH + frames, frames):

@@ -92,23 +92,22 @@ class Mesh:
             return place[points[:, :n]]
         return np.concatenate([curve(place[e], parts)[:, :-1] for e in edges], axis=1)
 
-    def boundary(self, place, parts):
-        """Edges that belong to one solid only, as curves (edges, vertices, 2), a list of arrays."""
-        found = []
-        kinds = self.solids()
-        edges = [(kind, edge(self.block(kind)[1], kind, i)) for kind in kinds
+    def rim(self):
+        """Edges that belong to one solid only: points (edges, 2 or 3), a middle one in the middle; a
+        list with an array a type of solid and side."""
+        edges = [edge(self.block(kind)[1], kind, i) for kind in self.solids()
                  for i in range(CORNERS[kind])]
         if not edges:
-            return found
-        ends = np.sort(np.concatenate([e[:, [0, -1]] for _, e in edges]), axis=1)
+            return []
+        ends = np.sort(np.concatenate([e[:, [0, -1]] for e in edges]), axis=1)
         _, inverse, counts = np.unique(ends, axis=0, return_inverse=True, return_counts=True)
         single = counts[inverse.reshape(-1)] == 1
-        begin = 0
-        for kind, e in edges:
-            chosen = place[e[single[begin : begin + len(e)]]]
-            begin += len(e)
-            found.append(curve(chosen, parts) if kind in QUADRATIC else chosen)
-        return found
+        begin = np.cumsum([0] + [len(e) for e in edges])
+        return [e[single[first : first + len(e)]] for e, first in zip(edges, begin)]
+
+    def boundary(self, place, parts):
+        """Edges that belong to one solid only, as curves (edges, vertices, 2), a list of arrays."""
+        return [curve(place[e], parts) if e.shape[1] == 3 else place[e] for e in self.rim()]
 
     def triangles(self, kind, place, values, parts):
         """The cells of a solid type cut into triangles: vertices, values there, triangles."""

@@ -1,8 +1,10 @@
-"""A run against the exact solution: compare_exact.py sdof|two_dof|bar|ball RESULT.h5
+"""A run against the exact solution: compare_exact.py sdof|two_dof|bar|bars|block|ball RESULT.h5
 
 sdof     one mass on a spring in front of a wall (--mass --stiffness --d0 --v0 --wall --e)
 two_dof  two masses on two springs, the second in front of a wall (--wall --e)
 bar      an elastic bar against a wall, its contact force: 300 from 0.5 to 0.5 + 2/3
+bars     two bars head-on, their contact force (--lengths --speeds --begin)
+block    a block that slides to rest on a rough plane, its U1 (--v0 --mu --gravity)
 ball     a ball dropped on a plane (--height --gravity --e); its U2 is the height less the initial
 
 Draws both and their difference, and prints the largest one. --columns names the columns of
@@ -15,6 +17,7 @@ import numpy as np
 from carom_results import (
     BLACK, COLOURS, Results, ScriptError, label, make_parser, mark_events, plt, run, save,
 )
+from contact_solutions import bars_head_on, sliding_distance, stopping
 from exact_solutions import bar_contact_force, bouncing_ball, oscillator, two_dof
 
 
@@ -62,21 +65,50 @@ def compare_two_dof(results, given):
 
 def compare_bar(results, given):
     """Contact force; no difference is taken within 10 % of its duration around both steps."""
+    begin, end = bar_contact_force([0.0])[1:]
+    height = bar_contact_force([0.5 * (begin + end)])[0][0]
+    return compare_plateau(results, given, height, begin, end)
+
+
+def compare_bars(results, given):
+    """Contact force of two bars of E = 900 and density 1, width 1."""
+    force, duration, *after = bars_head_on(*given.lengths, *given.speeds)
+    print("exact mean velocities after: {:.6g} {:.6g}".format(*after))
+    return compare_plateau(results, given, force, given.begin, given.begin + duration)
+
+
+def compare_plateau(results, given, height, begin, end):
+    """A contact force that is constant for a while."""
     chosen = choose(results, given.columns, ["/CF1"], 1)
     table = results.table("history", ["time", *chosen])
     time, force = table["time"], np.abs(table[chosen[0]])
     table[chosen[0]] = force
-    plateau, begin, end = bar_contact_force(time)
     margin = 0.1 * (end - begin)
     away = (np.abs(time - begin) > margin) & (np.abs(time - end) > margin)
     inside = away & (time > begin) & (time < end)
     if inside.any():
-        height = plateau.max()
         print(f"plateau: exact {height:.6g}, mean {force[inside].mean():.6g}, "
               f"standard deviation {force[inside].std() / height:.2%}")
         impulse = results.column("history", chosen[0].replace("CF1", "impulse")).sum()
-        print(f"impulse: exact {height * (end - begin):.6g}, carom {impulse:.6g}")
-    return table, {chosen[0]: lambda t: bar_contact_force(t)[0]}, "contact force", away
+        print(f"impulse: exact {height * (end - begin):.6g}, carom {abs(impulse):.6g}")
+
+    def exact(t):
+        return np.where((t >= begin) & (t < end), height, 0.0)
+
+    return table, {chosen[0]: exact}, "contact force", away
+
+
+def compare_block(results, given):
+    """The way of a block."""
+    chosen = choose(results, given.columns, ["/U1"], 1)
+    table = results.table("history", ["time", *chosen])
+    distance, stop = stopping(given.v0, given.mu, given.gravity)
+    print(f"exact: stops after {distance:.9g} at time {stop:.9g}")
+
+    def exact(t):
+        return sliding_distance(t, given.v0, given.mu, given.gravity)
+
+    return table, {chosen[0]: exact}, "displacement", None
 
 
 def compare_ball(results, given):
@@ -93,7 +125,8 @@ def compare_ball(results, given):
 
 
 CASES = {
-    "sdof": compare_sdof, "two_dof": compare_two_dof, "bar": compare_bar, "ball": compare_ball,
+    "sdof": compare_sdof, "two_dof": compare_two_dof, "bar": compare_bar, "bars": compare_bars,
+    "block": compare_block, "ball": compare_ball,
 }
 
 
@@ -141,6 +174,10 @@ def main():
     parser.add_argument("--wall", type=float, default=-0.5, help="displacement at the wall (-0.5)")
     parser.add_argument("--height", type=float, default=1.0, help="initial height (1)")
     parser.add_argument("--gravity", type=float, default=9.81, help="(9.81)")
+    parser.add_argument("--lengths", type=two_numbers, default=(10.0, 10.0), help="of bars (10,10)")
+    parser.add_argument("--speeds", type=two_numbers, default=(5.0, -5.0), help="of bars (5,-5)")
+    parser.add_argument("--begin", type=float, default=0.05, help="when the bars meet (0.05)")
+    parser.add_argument("--mu", type=float, default=0.3, help="friction of the block (0.3)")
     given = parser.parse_args()
     if given.e is None:
         given.e = 0.8 if given.case == "ball" else 1.0
@@ -148,6 +185,15 @@ def main():
         table, curves, quantity, counted = CASES[given.case](results, given)
         figure = draw(results, table, curves, quantity, counted)
         save(figure, results.output(given.output, f"_{given.case}_exact.png"))
+
+
+def two_numbers(text):
+    """Two numbers with a comma."""
+    try:
+        first, second = (float(word) for word in text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError("two numbers with a comma") from None
+    return first, second
 
 
 def restitution(text):

@@ -48,9 +48,7 @@ contains
       call find_impulse(scene, motion, impact, compliance, impulse, friction, held, error)
       if (allocated(error)) return
       after = row_rates(scene%rows, motion%motion)
-      ! a row that touched and was thrown open by the jump touches no more
-      motion%touching = held .and. .not. (was .and. .not. impact%forced .and. &
-            after > impact%rate_limit)
+      motion%touching = held
       call book_impulse(scene, motion, impulse, before, after)
       call book_friction(scene, motion, friction, slip)
       call project_touching(scene, motion, 0.0_wp, 0.0_wp, error)
@@ -61,7 +59,9 @@ contains
       call note_events(scene, motion, impact, was, impulse, before)
    end subroutine apply_impact
 
-   !> Impulses and the velocity after them; repeated while a new row rebounds too slowly.
+   !> Impulses and the velocity after them; repeated while a new row rebounds too slowly, or a row
+   !> without rebound is thrown open by others so slowly that it would be back within the step: held
+   !> then, or rows with mass in common would hit in turn at ever shorter times.
    subroutine find_impulse(scene, motion, impact, compliance, impulse, friction, held, error)
       type(scene_type), intent(inout) :: scene
       type(contact_motion_type), intent(inout) :: motion
@@ -74,9 +74,10 @@ contains
       real(wp), dimension(scene%rows%n) :: e, before, slip, after, limits
       real(wp) :: v_before(size(motion%motion%v))
       real(wp), dimension(size(compliance%w, 1)) :: q, p
-      logical :: slow(scene%rows%n), solved, none(compliance%n)
+      logical, dimension(scene%rows%n) :: slow, open, pressed
+      logical :: solved
 
-      none = .false.
+      pressed = .false.
       impulse = 0.0_wp
       friction = 0.0_wp
       before = row_rates(scene%rows, motion%motion)
@@ -85,7 +86,8 @@ contains
       e = merge(scene%rows%restitution, 0.0_wp, impact%new .and. .not. impact%plastic)
       do
          q = join_rates(compliance, before + e*min(0.0_wp, before), slip)
-         call solve_rows(compliance%w, q, scene%rows%friction(compliance%rows), none, p, solved)
+         call solve_rows(compliance%w, q, scene%rows%friction(compliance%rows), &
+               pressed(compliance%rows), p, solved)
          if (.not. solved) then
             call dependent_impulses(error)
             return
@@ -93,13 +95,18 @@ contains
          call split_forces(compliance, p, impulse, friction)
          motion%motion%v = v_before + matmul(compliance%x, p)
          after = row_rates(scene%rows, motion%motion)
-         held = motion%touching .or. impact%forced .or. (impact%new .and. impact%plastic)
-         held = held .or. (impact%new .and. .not. e > 0.0_wp .and. after <= impact%rate_limit)
-         held = held .or. (impact%near .and. impulse > 0.0_wp)
+         held = motion%touching .or. (impact%new .and. .not. e > 0.0_wp) .or. &
+               (impact%near .and. impulse > 0.0_wp)
+         open = held .and. .not. impulse > 0.0_wp .and. after > impact%rate_limit
+         held = impact%forced .or. pressed .or. (impact%new .and. impact%plastic) .or. &
+               (held .and. .not. open)
          call hold_acceleration(scene, motion, held, error)
          if (allocated(error)) return
          limits = max(capture_speeds(scene, motion%motion%a, impact%dt), impact%rate_limit)
          slow = impact%new .and. .not. impact%forced .and. e > 0.0_wp .and. after <= limits
+         open = open .and. .not. held .and. after <= limits
+         pressed = pressed .or. open
+         slow = slow .or. open
          if (.not. any(slow)) exit
          where (slow) e = 0.0_wp
       end do

@@ -4,7 +4,7 @@ module row_following
    use kinds, only: wp
    use errors, only: error_type
    use motion_state, only: state_type
-   use constraint_rows, only: row_gaps, row_rates, row_curvature, rate_size
+   use constraint_rows, only: row_gaps, row_rates, row_curvature, rate_size, law_penalty
    use row_placement, only: place_rows
    use impact_scene, only: scene_type, contact_motion_type, event_type, record_event, &
          event_release, rate_tolerance
@@ -56,8 +56,34 @@ contains
       if (.not. scene%rows%moving) return
       call place_rows(scene%rows, scene%geometry, scene%system%structure%map, from%motion, &
             to%motion, reach(scene, from, dt))
-      scene%curvature = row_curvature(scene%rows, to%motion)
+      call find_curvature(scene, from, to%motion, dt)
    end subroutine rows_at
+
+   !> The part of gap accelerations that comes from rows turning: in closed form for a node on an
+   !> edge, by a difference along the motion for rows weighted over edges.
+   subroutine find_curvature(scene, motion, ahead, dt)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(in) :: motion
+      type(state_type), intent(in) :: ahead      !! where the rows have been placed
+      real(wp), intent(in) :: dt
+      real(wp), parameter :: part = 0.1_wp       !! of the step
+      type(state_type) :: further
+      real(wp) :: rates(scene%rows%n)
+      logical :: weighted(scene%rows%n)
+
+      scene%curvature = row_curvature(scene%rows, ahead)
+      weighted = scene%rows%weight > 0.0_wp
+      if (.not. any(weighted)) return
+      rates = row_rates(scene%rows, ahead)
+      further = ahead
+      further%d = ahead%d + part*dt*ahead%v
+      call place_rows(scene%rows, scene%geometry, scene%system%structure%map, ahead, further, &
+            reach(scene, motion, dt))
+      where (weighted .and. scene%rows%facing) scene%curvature &
+            = (row_rates(scene%rows, ahead) - rates)/(part*dt)
+      call place_rows(scene%rows, scene%geometry, scene%system%structure%map, motion%motion, ahead, &
+            reach(scene, motion, dt))
+   end subroutine find_curvature
 
    !> Rows where the motion is.
    subroutine rows_here(scene, motion, dt)
@@ -70,6 +96,7 @@ contains
             motion%motion, reach(scene, motion, dt))
    end subroutine rows_here
 
+   !> How far rows look for partners: what may be gone in the step, and how deep springs are in.
    pure function reach(scene, motion, dt) result(distance)
       type(scene_type), intent(in) :: scene
       type(contact_motion_type), intent(in) :: motion
@@ -78,6 +105,8 @@ contains
       real(wp), parameter :: least_share = 1.0e-6_wp
 
       distance = reach_factor*dt*(maxval(abs(motion%motion%v)) + dt*maxval(abs(motion%motion%a)))
+      if (any(scene%rows%law == law_penalty)) distance = distance + maxval( &
+            motion%lambda/scene%rows%stiffness, mask=scene%rows%law == law_penalty)
       distance = max(distance, least_share*scene%geometry%size)
    end function reach
 

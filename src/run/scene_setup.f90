@@ -42,6 +42,7 @@ module scene_setup
       type(source_line_type), allocatable :: remarks(:)
       type(ordering_type) :: ordering            !! of the equations, this step
       integer(int64) :: n_events(5) = 0          !! by event_ kinds, over the whole run
+      integer :: most_touching = 0               !! rows in contact at once
    end type simulation_type
 
 contains
@@ -291,7 +292,7 @@ contains
       if (abs(dt - step%dt) <= 1.0e-6_wp*step%dt) dt = step%dt
    end function last_increment
 
-   !> Adds the events of the increment at hand to the count of the run.
+   !> Adds the events of the increment at hand to the count of the run; sees how many rows touch.
    pure subroutine count_events(self)
       type(simulation_type), intent(inout) :: self
       integer :: i
@@ -301,6 +302,8 @@ contains
             self%n_events(kind) = self%n_events(kind) + 1
          end associate
       end do
+      self%most_touching = max(self%most_touching, &
+            count(self%motion%touching .or. self%motion%lambda > 0.0_wp))
    end subroutine count_events
 
    subroutine begin_conditions(self, i_step, t)

@@ -1,0 +1,60 @@
+"""Two bodies keep their momentum: every method, every pairing of meshes, with friction and without."""
+import itertools
+
+import numpy as np
+
+from carom_case import Checks
+from contact_case import Folder
+
+folder = Folder('two_bars', 'make_bars')
+make = folder.make
+METHODS = {
+    'transformation': '*IMPACT',
+    'transformation, e = 0.5': '*IMPACT, RESTITUTION=0.5',
+    'fictitious force': '*IMPACT, METHOD=FICTITIOUS FORCE, RETURN=0.3',
+    'penalty': '*IMPACT, METHOD=PENALTY, STIFFNESS=1e4',
+    'Lagrange': '*IMPACT, METHOD=LAGRANGE',
+}
+MESHES = {
+    '4 on 4': ((3.0, 12, 4, 4), (4.0, 16, 4, 4)),
+    '4 on 4, nonmatching': ((3.0, 12, 4, 4), (4.0, 12, 3, 4)),
+    '8 on 8': ((3.0, 12, 4, 8), (4.0, 16, 4, 8)),
+    '8 on 8, nonmatching': ((3.0, 12, 4, 8), (4.0, 16, 6, 8)),
+    '8 on 4': ((3.0, 12, 4, 8), (4.0, 16, 4, 4)),
+    '4 on 8': ((3.0, 12, 3, 4), (4.0, 16, 4, 8)),
+}
+PAIRS = {'node rows': '', 'two passes': ', PASSES=2', 'weighted rows': make.SURFACES,
+         'weighted rows, no mass at the contact': make.SURFACES + ', MASS=REDISTRIBUTED'}
+
+
+def run(method, mesh, pair, friction):
+    """Bars that meet a little askew: one flies across as well."""
+    deck = make.deck('momentum', make.mesh(*mesh), (5, -5), pair, method,
+                     '*FRICTION\n0.3\n' if friction else '')
+    deck = deck.replace('left, 1, 5\n', 'left, 1, 5\nleft, 2, 0.5\n')
+    return folder.run(deck, dt=0.25 / 30, end=0.4, nu=0.3)
+
+
+def check(checks, method, mesh, pair, friction):
+    name = f'{method}, {mesh}, {pair}' + (', friction' if friction else '')
+    contact = run(METHODS[method], MESHES[mesh], PAIRS[pair], friction)
+    total, reference, _, size = contact.momentum()
+    touched = np.abs(contact.impulse).sum() / size
+    drift = np.abs(total - total[0]).max() / size
+    print(f'        {name}: impulse {touched:.4f} of the momentum, energy '
+          f'{contact.energy[-1] / contact.energy[0]:.5f}, smallest gap {contact.gap.min():.2g}, '
+          f'angular momentum drifts by {np.abs(reference - reference[0]).max() / size:.2g}')
+    checks.at_least(touched, 0.1, f'{name}: they hit')
+    checks.at_most(drift, 1e-11, f'{name}: drift of momentum')
+
+
+checks = Checks()
+for method, mesh in itertools.product(METHODS, MESHES):
+    for friction in (False, True):
+        check(checks, method, mesh, 'node rows', friction)
+for pair, mesh in itertools.product(list(PAIRS)[1:], ('4 on 4, nonmatching', '8 on 8, nonmatching')):
+    for method in ('transformation', 'fictitious force'):
+        if 'no mass' in pair and method != 'transformation':
+            continue
+        check(checks, method, mesh, pair, False)
+checks.finish()
