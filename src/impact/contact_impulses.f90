@@ -161,7 +161,8 @@ contains
       logical :: solved
 
       if (.not. any(motion%touching)) return
-      gaps = merge(row_gaps(scene%rows, motion%motion), 0.0_wp, motion%touching)
+      gaps = merge(row_gaps(scene%rows, motion%motion), 0.0_wp, &
+            motion%touching .and. scene%rows%facing)
       rates = merge(row_rates(scene%rows, motion%motion), 0.0_wp, motion%touching)
       if (maxval(abs(gaps)) <= gap_limit .and. maxval(abs(rates)) <= rate_limit) return
       call mass_compliance(scene, motion%touching, compliance, error, .true.)
