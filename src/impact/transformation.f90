@@ -77,7 +77,7 @@ contains
       progress%remaining = dt
       progress%beta = scene%system%newmark%beta
       allocate (progress%let_go(scene%rows%n), source=-dt)
-      allocate (progress%stubborn(scene%rows%n), source=.false.)
+      allocate (progress%stubborn(scene%rows%n), progress%ignored(scene%rows%n), source=.false.)
       gaps = row_gaps(scene%rows, motion%motion)
       aim = .true.
       do while (progress%remaining > time_tolerance*dt)
@@ -89,6 +89,7 @@ contains
          if (allocated(error)) return
          if (span%dt <= 0.0_wp) cycle
          span%gaps = gaps
+         span%ignored = progress%ignored
          call find_hits(scene, motion, next, span, hits, error)
          if (allocated(error)) return
          if (hits%n == 0) then
@@ -167,6 +168,9 @@ contains
       if (allocated(error)) return
       if (scene%rows%moving) call refine_impact(scene, motion, span, all_hits, tau, at, lost, error)
       if (allocated(error)) return
+      ! a gap that jumps, as from partner to partner, is never zero: not to be looked for again
+      if (lost .and. tau < (1.0_wp - merge_time_tolerance)*span%dt) &
+            progress%ignored(all_hits%row(:all_hits%n)) = .true.
       if (tau > 0.0_wp) call take_span(scene, motion, at, tau, span, progress, error)
       if (allocated(error) .or. lost) return
       progress%n_events = progress%n_events + 1
