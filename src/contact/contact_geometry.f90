@@ -20,6 +20,8 @@ module contact_geometry
 
    !> No reach is longer than this multiple of the extent of the nodes.
    real(wp), parameter :: widest_reach = 10.0_wp
+   !> A node closer to a circle than this share of its radius is on it.
+   real(wp), parameter :: touch_share = 1.0e-9_wp
 
    !> Rows first to last of the list, which are the nodes of one surface, against a target.
    type :: pass_type
@@ -47,7 +49,7 @@ module contact_geometry
 
    !> Positions of all nodes before and after a motion, and how far a node looks for a partner.
    type :: positions_type
-      real(wp) :: t = 0.0_wp                     !! after it
+      real(wp) :: t(2) = 0.0_wp                  !! before and after it
       real(wp) :: reach = 0.0_wp
       real(wp), allocatable :: before(:, :), now(:, :)   !! (3, n_nodes)
    end type positions_type
@@ -144,7 +146,7 @@ contains
    !> All rows at the displacements `now`, reached from those `before`.
    subroutine find_row_terms(self, t, before, now, reach, terms)
       type(contact_geometry_type), intent(inout) :: self
-      real(wp), intent(in) :: t                  !! total time reached
+      real(wp), intent(in) :: t(2)               !! total time before and after
       real(wp), intent(in) :: before(:, :), now(:, :)   !! (3, n_nodes) displacements
       real(wp), intent(in) :: reach              !! nodes farther from all edges have no partner
       type(row_terms_type), intent(inout) :: terms
@@ -269,18 +271,20 @@ contains
       integer, intent(in) :: i
       type(positions_type), intent(in) :: positions
       type(row_terms_type), intent(inout) :: terms
-      real(wp) :: centre(2), arm(2), distance, normal(3), along(3)
+      real(wp) :: start(2), arm(2), distance, normal(3), along(3)
       real(wp), parameter :: none(3) = 0.0_wp
 
-      centre = pass%circle%point(:2)
-      if (pass%circle%amplitude > 0 .and. .not. pass%frozen) centre = centre &
-            + pass%circle%motion(:2) &
-            *amplitude_at(self%amplitudes(pass%circle%amplitude), positions%t)
-      arm = positions%now(:2, self%rows(i)%node) - centre
+      arm = positions%now(:2, self%rows(i)%node) - centre_of(self, pass, positions%t(2))
+      start = positions%before(:2, self%rows(i)%node) - centre_of(self, pass, positions%t(1))
       distance = norm2(arm)
-      if (.not. distance > 0.0_wp) arm = [0.0_wp, 1.0_wp]
       normal = 0.0_wp
-      normal(:2) = sign(1.0_wp, pass%circle%radius)*arm/norm2(arm)
+      normal(:2) = entry_to_circle(start, arm, pass%circle%radius)
+      if (norm2(normal) > 0.0_wp) then
+         distance = dot_product(normal(:2), arm)
+      else
+         if (.not. distance > 0.0_wp) arm = [0.0_wp, 1.0_wp]
+         normal(:2) = sign(1.0_wp, pass%circle%radius)*arm/norm2(arm)
+      end if
       along = [-normal(2), normal(1), 0.0_wp]
       terms%facing(i) = .true.
       terms%gap(i) = sign(1.0_wp, pass%circle%radius)*(distance - abs(pass%circle%radius))
@@ -289,6 +293,39 @@ contains
       terms%along(:, i) = along
       call add_term(terms, i, self%rows(i)%node, normal, along, none)
    end subroutine place_on_circle
+
+   pure function centre_of(self, pass, t) result(centre)
+      type(contact_geometry_type), intent(in) :: self
+      type(pass_type), intent(in) :: pass
+      real(wp), intent(in) :: t
+      real(wp) :: centre(2)
+
+      centre = pass%circle%point(:2)
+      if (pass%circle%amplitude == 0 .or. pass%frozen) return
+      centre = centre + pass%circle%motion(:2) &
+            *amplitude_at(self%amplitudes(pass%circle%amplitude), t)
+   end function centre_of
+
+   !> The normal where a straight path enters a circle, if it leaves it again: a node must not fly
+   !> through in one step. Zero if it does not. Places are relative to the centre.
+   pure function entry_to_circle(start, finish, radius) result(normal)
+      real(wp), intent(in) :: start(2), finish(2)
+      real(wp), intent(in) :: radius
+      real(wp) :: normal(2)
+      real(wp) :: path(2), a, b, c
+
+      normal = 0.0_wp
+      if (radius < 0.0_wp .or. norm2(finish) < radius) return
+      if (norm2(start) < radius*(1.0_wp + touch_share)) return
+      path = finish - start
+      a = dot_product(path, path)
+      b = dot_product(path, start)
+      c = dot_product(start, start) - radius**2
+      if (b >= 0.0_wp .or. b + a <= 0.0_wp .or. b**2 <= a*c) return
+      ! the smaller root of a s^2 + 2 b s + c without cancellation
+      normal = start + path*c/(sqrt(b**2 - a*c) - b)
+      normal = normal/norm2(normal)
+   end function entry_to_circle
 
    !> A node against the edge it faces, if any.
    subroutine place_on_edge(self, pass, i, positions, outward, terms)

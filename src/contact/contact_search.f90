@@ -105,10 +105,38 @@ contains
       ! Deep inside no other side of the body is seen from outside, nor one from inside far outside.
       if (partner%gap > deep .or. -partner%gap > far) partner = partner_type()
       if (crossed == 0) return
-      if (cuts_corner(self, x_before, x_now, query, crossed, partner)) return
-      call project_along(self, x_now, query, crossed, trial)
+      if (.not. cuts_corner(self, x_before, x_now, query, crossed, partner)) then
+         call project_along(self, x_now, query, crossed, trial)
+         if (trial%edge > 0) partner = trial
+      end if
+      if (partner%edge > 0 .and. partner%gap < 0.0_wp) return
+      call enter_edge(self, x_before, x_now, query, crossed, trial)
       if (trial%edge > 0) partner = trial
    end subroutine find_partner
+
+   !> The partner where a node enters a body that it leaves again in the same step; edge 0 for one
+   !> that touches the edge at the start.
+   pure subroutine enter_edge(self, x_before, x_now, query, edge, partner)
+      type(target_type), intent(in) :: self
+      real(wp), intent(in) :: x_before(:, :), x_now(:, :)
+      type(query_type), intent(in) :: query
+      integer, intent(in) :: edge
+      type(partner_type), intent(out) :: partner
+      integer :: n
+      real(wp) :: x(2, 3), change(2, 3), shape(3), rise(3), s, fraction, path(2)
+
+      n = self%n_edge_nodes(edge)
+      x = edge_coordinates(self, edge, x_now)
+      change = x - edge_coordinates(self, edge, x_before)
+      s = 0.0_wp
+      call cross_edge(x(:, :n), change, query, s, fraction)
+      if (fraction > 1.0_wp) return
+      call edge_functions(n, s, shape, rise)
+      path = query%now - query%before - matmul(change, shape)
+      if (fraction*norm2(path) <= touch_share*norm2(x(:, 2) - x(:, 1))) return
+      call make_partner(self, x_now, query, edge, s, s, partner)
+      if (partner%gap >= 0.0_wp) partner%edge = 0
+   end subroutine enter_edge
 
    !> True if the closest point is so near along the surface to the edge that was crossed that the
    !> node has only cut the corner between them: no further than three times its path.
@@ -168,7 +196,7 @@ contains
       real(wp), intent(inout) :: distance        !! limit, then that of the closest point
       real(wp), intent(out) :: fraction
       integer :: n
-      real(wp) :: x(2, 3), change(2, 3), shape(3), rise(3), s, s_free, path(2), limit
+      real(wp) :: x(2, 3), change(2, 3), shape(3), rise(3), s, s_free, s_cross, path(2), limit
 
       fraction = huge(1.0_wp)
       n = self%n_edge_nodes(edge)
@@ -180,7 +208,8 @@ contains
       distance = norm2(query%now - matmul(x, shape))
       path = query%now - query%before - matmul(change, shape)
       if (distance <= norm2(path) + self%unrest) then
-         call cross_edge(x(:, :n), change, query, s, fraction)
+         s_cross = s
+         call cross_edge(x(:, :n), change, query, s_cross, fraction)
       end if
       if (distance > limit) return
       limit = 2.0_wp*norm2(path)
@@ -193,19 +222,18 @@ contains
 
    !> The fraction of the step after which a node crosses an edge inward, both moving straight; the
    !> path is that relative to the point of the edge where it crosses.
-   pure subroutine cross_edge(x, change, query, s_end, fraction)
+   pure subroutine cross_edge(x, change, query, s, fraction)
       real(wp), intent(in) :: x(:, :)            !! (2, 2 or 3) edge now
       real(wp), intent(in) :: change(2, 3)       !! its displacements in the step
       type(query_type), intent(in) :: query
-      real(wp), intent(in) :: s_end              !! closest point at the end of the step
+      real(wp), intent(inout) :: s               !! where to begin, then where it crosses
       real(wp), intent(out) :: fraction
       integer :: round
       logical :: found
-      real(wp) :: s, start(2), when, shape(3), rise(3)
+      real(wp) :: start(2), when, shape(3), rise(3)
       real(wp) :: point(2), tangent(2), normal(2), stretch, bend
 
       fraction = huge(1.0_wp)
-      s = s_end
       do round = 1, 3
          call edge_functions(size(x, 2), s, shape, rise)
          start = query%before + matmul(change, shape)

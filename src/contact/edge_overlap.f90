@@ -146,7 +146,8 @@ contains
       c = a(1)*b(2) - a(2)*b(1)
    end function cross
 
-   !> The target edge that is opposite to a point of a slave edge, the nearest if there are several.
+   !> The target edge that is opposite to a point of a slave edge, the nearest if there are several;
+   !> one that overlaps by more than the length of the slave edge is not.
    pure subroutine find_opposite(self, target, x_now, s, edge)
       type(slave_edge_type), intent(in) :: self
       type(target_type), intent(in) :: target    !! with the edges of set_slave_edge
@@ -155,7 +156,7 @@ contains
       integer, intent(out) :: edge               !! 0 if there is none in the range
       integer :: i
       logical :: found
-      real(wp) :: point(2), normal(2), x(2, 3), place, fraction, least
+      real(wp) :: point(2), normal(2), x(2, 3), place, fraction, least, deep, distance
       real(wp) :: shape(3), rise(3), across(2), along(2), outward(2), stretch, bend
 
       edge = 0
@@ -164,16 +165,18 @@ contains
       point = matmul(self%x, shape)
       normal = matmul(self%normal, shape)
       normal = normal/norm2(normal)
+      deep = min(self%range, norm2(self%x(:, 2) - self%x(:, 1)))
       do i = 1, target%n_found
          associate (n => target%n_edge_nodes(target%found(i)))
             x = edge_coordinates(target, target%found(i), x_now)
-            call cut_edge(x(:, :n), point + self%range*normal, point - self%range*normal, place, &
+            call cut_edge(x(:, :n), point + deep*normal, point - self%range*normal, place, &
                   fraction, found)
-            if (.not. found .or. abs(fraction - 0.5_wp) >= least) cycle
+            distance = abs(deep - fraction*(deep + self%range))
+            if (.not. found .or. distance >= least) cycle
             call edge_frame(x(:, :n), place, across, along, outward, stretch, bend)
          end associate
          if (dot_product(outward, normal) < facing_limit) cycle
-         least = abs(fraction - 0.5_wp)
+         least = distance
          edge = target%found(i)
       end do
    end subroutine find_opposite

@@ -11,7 +11,7 @@
 !> than the reach.
 module weighted_rows
    use kinds, only: wp
-   use segment_projection, only: closest_on_edge, cut_edge, edge_functions
+   use segment_projection, only: closest_on_edge, cut_edge, edge_frame, edge_functions
    use target_surface, only: edge_coordinates, target_type
    use edge_overlap, only: find_breaks, find_opposite, set_slave_edge, slave_edge_type
    implicit none
@@ -20,6 +20,8 @@ module weighted_rows
    public :: weighted_rows_type, find_weighted_rows
 
    real(wp), parameter :: least_cover = 0.05_wp
+   !> Where normals differ by more than 60 degrees the force is not made larger.
+   real(wp), parameter :: least_facing = 0.5_wp
    integer, parameter :: n_points = 5
    real(wp), parameter :: inner = sqrt(5.0_wp - 2.0_wp*sqrt(10.0_wp/7.0_wp))/3.0_wp
    real(wp), parameter :: outer = sqrt(5.0_wp + 2.0_wp*sqrt(10.0_wp/7.0_wp))/3.0_wp
@@ -91,7 +93,8 @@ contains
       integer, intent(in) :: place(:)
       type(sums_type), intent(inout) :: sums
       integer :: opposite, i, j, k
-      real(wp) :: s, ds, shape(3), rise(3), normal(2), gap, terms(2, 6, 3), x(2, 3), shape_target(3)
+      real(wp) :: s, ds, shape(3), rise(3), normal(2), gap, rate(2)
+      real(wp) :: terms(2, 6, 3), x(2, 3), shape_target(3)
 
       terms = 0.0_wp
       call find_opposite(edge, target, x_now, sum(ends)/2.0_wp, opposite)
@@ -106,15 +109,15 @@ contains
          end do
          if (opposite == 0) cycle
          call look_across(edge, x(:, :target%n_edge_nodes(opposite)), shape, normal, gap, &
-               shape_target)
+               shape_target, rate)
          do j = 1, edge%n
             k = place(edge%nodes(j))
             sums%weight(k) = sums%weight(k) + ds*shape(j)
             sums%gap(k) = sums%gap(k) + ds*shape(j)*gap
             sums%normal(:, k) = sums%normal(:, k) + ds*shape(j)*normal
             do k = 1, 3
-               terms(:, k, j) = terms(:, k, j) + ds*shape(j)*shape(k)*normal
-               terms(:, k + 3, j) = terms(:, k + 3, j) - ds*shape(j)*shape_target(k)*normal
+               terms(:, k, j) = terms(:, k, j) + ds*shape(j)*shape(k)*rate
+               terms(:, k + 3, j) = terms(:, k + 3, j) - ds*shape(j)*shape_target(k)*rate
             end do
          end do
       end do
@@ -126,14 +129,18 @@ contains
       end do
    end subroutine add_piece
 
-   !> The point of a target edge along the normal from a point of a slave edge.
-   pure subroutine look_across(edge, x, shape, normal, gap, shape_target)
+   !> The point of a target edge along the normal n from a point of a slave edge. It slides along the
+   !> edge, whose own normal is m: with their relative velocity v the gap changes at the rate
+   !> m . v / (n . m).
+   pure subroutine look_across(edge, x, shape, normal, gap, shape_target, rate)
       type(slave_edge_type), intent(in) :: edge
       real(wp), intent(in) :: x(:, :)            !! (2, 2 or 3) target edge
       real(wp), intent(in) :: shape(3)           !! of the slave edge at the point
       real(wp), intent(out) :: normal(2), gap, shape_target(3)
+      real(wp), intent(out) :: rate(2)           !! m / (n . m)
       logical :: found
       real(wp) :: rise(3), point(2), s, fraction, reach(2)
+      real(wp) :: opposite(2), tangent(2), outward(2), stretch, bend
 
       point = matmul(edge%x, shape)
       normal = matmul(edge%normal, shape)
@@ -144,6 +151,8 @@ contains
       if (.not. found) call closest_on_edge(x, point, s, fraction)
       call edge_functions(size(x, 2), s, shape_target, rise)
       gap = dot_product(normal, point - matmul(x, shape_target(:size(x, 2))))
+      call edge_frame(x, s, opposite, tangent, outward, stretch, bend)
+      rate = outward/max(dot_product(outward, normal), least_facing)
    end subroutine look_across
 
    pure subroutine add_terms(sums, owner, nodes, coefficient)

@@ -11,7 +11,7 @@ module constraint_rows
 
    public :: rows_type, row_gaps, row_rates, row_accelerations, row_forces, row_vector
    public :: row_curvature, slip_rates, slip_products, slip_vector, contact_forces
-   public :: slip_increments, may_hit
+   public :: slip_increments, wall_work, may_hit
    public :: gap_size, rate_size, acceleration_size, wall_rates
    public :: law_motion, law_closed, law_penalty, law_overlap
 
@@ -141,6 +141,20 @@ contains
             + wall_positions(self, self%sliding_motion, to%t) &
             - wall_positions(self, self%sliding_motion, from%t)
    end function slip_increments
+
+   !> Work that moving walls do on what touches them between two states, by mean contact and friction
+   !> forces.
+   pure function wall_work(self, from, to, lambda, tau) result(work)
+      type(rows_type), intent(in) :: self
+      type(state_type), intent(in) :: from, to
+      real(wp), intent(in) :: lambda(:), tau(:)  !! (n)
+      real(wp) :: work
+
+      work = -dot_product(lambda, wall_positions(self, self%motion, to%t) &
+            - wall_positions(self, self%motion, from%t)) &
+            - dot_product(tau, wall_positions(self, self%sliding_motion, to%t) &
+            - wall_positions(self, self%sliding_motion, from%t))
+   end function wall_work
 
    !> c(t) of moving walls.
    pure function wall_positions(self, motion, t) result(positions)

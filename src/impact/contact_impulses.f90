@@ -5,7 +5,8 @@ module contact_impulses
    use errors, only: error_type, new_error, status_numerical
    use complementarity, only: solve_complementarity, solve_equality
    use equation_of_motion, only: prepare_mass, solve_mass, force_balance
-   use structure, only: inertia_force
+   use structure, only: inertia_force, strain_energy
+   use external_load, only: load_at
    use energy_ledger, only: record_impact, record_friction
    use constraint_rows, only: row_gaps, row_rates, row_accelerations, row_curvature, slip_rates, &
          slip_products, rate_size, gap_size, wall_rates, contact_forces, law_penalty
@@ -189,19 +190,41 @@ contains
       logical :: solved
 
       if (.not. any(motion%touching)) return
-      gaps = merge(row_gaps(scene%rows, motion%motion), 0.0_wp, motion%touching)
+      gaps = merge(row_gaps(scene%rows, motion%motion), 0.0_wp, &
+            motion%touching .and. scene%rows%facing)
       rates = merge(row_rates(scene%rows, motion%motion), 0.0_wp, motion%touching)
       if (maxval(abs(gaps)) <= gap_limit .and. maxval(abs(rates)) <= rate_limit) return
       call mass_compliance(scene, motion%touching, compliance, error, .true.)
       if (allocated(error)) return
       if (maxval(abs(gaps)) > gap_limit) then
          call solve_equality(compliance%w, gaps(compliance%rows), p, solved)
-         motion%motion%d = motion%motion%d + matmul(compliance%x, p)
+         call shift(scene, motion, matmul(compliance%x, p))
       end if
       if (maxval(abs(rates)) <= rate_limit) return
       rates = 0.0_wp
       call set_rates(scene, motion, motion%touching, rates, impulse, error)
    end subroutine project_touching
+
+   !> Moves the bodies; what that does to their energy is booked where they slide on each other. (On
+   !> fixed rows it is round-off.)
+   subroutine shift(scene, motion, change)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(inout) :: motion
+      real(wp), intent(in) :: change(:)          !! (n_freedoms) of displacement
+      real(wp) :: gain, work
+
+      if (.not. scene%rows%moving) then
+         motion%motion%d = motion%motion%d + change
+         return
+      end if
+      associate (structure => scene%system%structure, state => motion%motion)
+         work = dot_product(load_at(scene%system%loads, size(change), state%t), change)
+         gain = -strain_energy(structure, state%d, state%history)
+         state%d = state%d + change
+         gain = gain + strain_energy(structure, state%d, state%history)
+      end associate
+      call record_impact(scene%ledger, work - gain, work)
+   end subroutine shift
 
    !> Applies the impulses that give the marked rows the gap rates asked for.
    subroutine set_rates(scene, motion, marked, target_rate, impulse, error)

@@ -27,6 +27,7 @@ module contact_release
       logical :: at_limit = .false.          !! no more events are allowed
       real(wp), allocatable :: let_go(:)     !! (n_rows) what remained when the row was released
       logical, allocatable :: stubborn(:)    !! (n_rows) held to the end of the step (note_return)
+      logical, allocatable :: ignored(:)     !! (n_rows) not hit any more in this step
    end type progress_type
 
    !> A contact force below this part of its size at the start of the span has vanished.

@@ -5,10 +5,11 @@ module impact_scene
    use surfaces, only: beta_automatic, method_transformation
    use motion_state, only: state_type
    use equation_of_motion, only: system_type
-   use energy_ledger, only: ledger_type, record_span, record_friction, record_springs
+   use energy_ledger, only: ledger_type, record_span, record_impact, record_friction, &
+         record_springs
    use contact_geometry, only: contact_geometry_type
    use constraint_rows, only: rows_type, row_accelerations, contact_forces, slip_increments, &
-         law_penalty
+         wall_work, law_penalty
    implicit none
    private
 
@@ -152,13 +153,18 @@ contains
       type(scene_type), intent(inout) :: scene
       type(contact_motion_type), intent(in) :: from
       type(contact_motion_type), intent(inout) :: to
-      real(wp) :: slip(scene%rows%n), force(size(from%force))
+      real(wp) :: slip(scene%rows%n), force(size(from%force)), work
 
       force = from%force
       if (allocated(from%carried)) force = force + from%carried
       call record_span(scene%ledger, scene%system, from%motion, to%motion, force, to%force)
       scene%impulse = scene%impulse + (to%motion%t - from%motion%t)*(from%lambda &
             + scene%system%newmark%gamma*(to%lambda - from%lambda))
+      if (any(scene%rows%amplitude > 0)) then
+         work = wall_work(scene%rows, from%motion, to%motion, (from%lambda + to%lambda)/2.0_wp, &
+               (from%tau + to%tau)/2.0_wp)
+         call record_impact(scene%ledger, work, work)
+      end if
       call record_springs(scene%ledger, [spring_energy(scene, to%lambda), &
             spring_energy(scene, to%tau)])
       if (.not. any(scene%rows%friction > 0.0_wp)) return

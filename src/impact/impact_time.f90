@@ -18,6 +18,7 @@ module impact_time
       real(wp) :: beta = 0.25_wp
       logical, allocatable :: held(:)        !! (n_rows) rows held bilaterally in every trial
       real(wp), allocatable :: gaps(:)       !! (n_rows) at the start, by rows at their places there
+      logical, allocatable :: ignored(:)     !! (n_rows) rows that are not hit in this step
       real(wp) :: gap_limit = 0.0_wp         !! smaller gaps are round-off
       real(wp) :: found_limit = 0.0_wp       !! smaller gaps are near enough to an impact
       real(wp) :: rate_limit = 0.0_wp        !! smaller gap rates are round-off
@@ -65,6 +66,7 @@ contains
       a0 = row_accelerations(scene%rows, from%motion%a)
       g1 = row_gaps(scene%rows, to%motion)
       free = may_hit(scene%rows) .and. .not. from%touching
+      if (allocated(span%ignored)) free = free .and. .not. span%ignored
       do i = 1, scene%rows%n
          if (.not. free(i)) cycle
          path = new_path(span%dt, g0(i), r0(i), a0(i), g1(i))
@@ -178,6 +180,7 @@ contains
       integer :: i
 
       free = may_hit(scene%rows) .and. .not. from%touching
+      if (allocated(span%ignored)) free = free .and. .not. span%ignored
       g0 = start_gaps(scene, from, span)
       gaps = row_gaps(scene%rows, at%motion)
       do i = 1, scene%rows%n

@@ -118,7 +118,7 @@ contains
       integer :: i
 
       if (.not. self%moving) return
-      call find_row_terms(geometry, now%t, nodal_displacements(map, before%d), &
+      call find_row_terms(geometry, [before%t, now%t], nodal_displacements(map, before%d), &
             nodal_displacements(map, now%d), reach, terms)
       call write_rows(self, terms, map)
       products = multiply(self%along_normal, now%d)

@@ -32,7 +32,7 @@ module transformation
    real(wp), parameter :: time_tolerance = 1.0e-13_wp
 
    !> Rows are placed so often at an impact until it stays where it is.
-   integer, parameter :: max_refinements = 12
+   integer, parameter :: max_refinements = 60
 
    !> beta of the impact step by the thesis.
    real(wp), parameter :: thesis_beta = 1.0_wp/6.0_wp
@@ -77,7 +77,7 @@ contains
       progress%remaining = dt
       progress%beta = scene%system%newmark%beta
       allocate (progress%let_go(scene%rows%n), source=-dt)
-      allocate (progress%stubborn(scene%rows%n), source=.false.)
+      allocate (progress%stubborn(scene%rows%n), progress%ignored(scene%rows%n), source=.false.)
       gaps = row_gaps(scene%rows, motion%motion)
       aim = .true.
       do while (progress%remaining > time_tolerance*dt)
@@ -89,6 +89,7 @@ contains
          if (allocated(error)) return
          if (span%dt <= 0.0_wp) cycle
          span%gaps = gaps
+         span%ignored = progress%ignored
          call find_hits(scene, motion, next, span, hits, error)
          if (allocated(error)) return
          if (hits%n == 0) then
@@ -167,6 +168,9 @@ contains
       if (allocated(error)) return
       if (scene%rows%moving) call refine_impact(scene, motion, span, all_hits, tau, at, lost, error)
       if (allocated(error)) return
+      ! a gap that jumps, as from partner to partner, is never zero: not to be looked for again
+      if (lost .and. tau < (1.0_wp - merge_time_tolerance)*span%dt) &
+            progress%ignored(all_hits%row(:all_hits%n)) = .true.
       if (tau > 0.0_wp) call take_span(scene, motion, at, tau, span, progress, error)
       if (allocated(error) .or. lost) return
       progress%n_events = progress%n_events + 1
@@ -197,8 +201,8 @@ contains
    end subroutine find_impact
 
    !> Places sliding rows where the impact was found and looks for it again, until it stays: Newton's
-   !> method on the true gap. Lost is an impact that the rows at its own place do not show; the span
-   !> then ends there without one.
+   !> method on the true gap, with bisection where the rows at hand lead out of the bracket. Lost is
+   !> an impact that is none: the span then ends without one.
    subroutine refine_impact(scene, motion, span, hits, tau, at, lost, error)
       type(scene_type), intent(inout) :: scene
       type(contact_motion_type), intent(in) :: motion
@@ -208,37 +212,61 @@ contains
       type(contact_motion_type), intent(inout) :: at
       logical, intent(out) :: lost
       type(error_type), allocatable, intent(out) :: error
-      type(contact_motion_type) :: next
-      type(hits_type) :: found
-      real(wp) :: gaps(scene%rows%n), rates(scene%rows%n), before
+      logical :: suspect(scene%rows%n)
+      real(wp) :: low, high, gap
       integer :: i
 
-      lost = .false.
-      before = -1.0_wp
+      low = 0.0_wp
+      high = span%dt
+      suspect = .false.
       do i = 1, max_refinements
+         suspect(hits%row(:hits%n)) = .true.
          call rows_at(scene, motion, at, span%dt)
-         gaps = row_gaps(scene%rows, at%motion)
-         if (tau > 0.0_wp .and. abs(minval(gaps(hits%row(:hits%n)))) <= span%found_limit) exit
-         if (.not. max(tau, before) > 0.0_wp .and. i > 1) exit
-         before = tau
-         call advance_smoothly(scene, motion, span%dt, span%beta, next, error, span%held)
-         if (allocated(error)) return
-         call find_hits(scene, motion, next, span, found, error)
-         if (allocated(error)) return
-         lost = found%n == 0
-         if (lost) exit
-         hits = found
-         call find_impact(scene, motion, next, span, hits, tau, at, error)
+         gap = minval(row_gaps(scene%rows, at%motion), mask=suspect)
+         if (abs(gap) <= span%found_limit .and. (tau > 0.0_wp .or. i > 1)) exit
+         if (gap < 0.0_wp) high = tau
+         if (gap > 0.0_wp) low = tau
+         if (high - low <= time_tolerance*span%dt) exit
+         call look_again(scene, motion, span, [low, high], hits, tau, at, error)
          if (allocated(error)) return
       end do
-      if (lost .and. .not. tau > 0.0_wp) then
-         rates = row_rates(scene%rows, motion%motion)
-         lost = minval(rates(hits%row(:hits%n))) > span%rate_limit
-         if (lost) tau = span%dt/2.0_wp
-      end if
+      lost = gap > span%gap_limit*(merge_gap_tolerance/gap_tolerance)
       if (.not. tau > 0.0_wp) return
       call advance_smoothly(scene, motion, tau, span%beta, at, error, span%held)
    end subroutine refine_impact
+
+   !> The earliest impact by the rows as they have been placed now, in a bracket.
+   subroutine look_again(scene, motion, span, bracket, hits, tau, at, error)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(in) :: motion
+      type(span_type), intent(in) :: span
+      real(wp), intent(in) :: bracket(2)
+      type(hits_type), intent(inout) :: hits     !! as before where nothing is found
+      real(wp), intent(inout) :: tau
+      type(contact_motion_type), intent(inout) :: at
+      type(error_type), allocatable, intent(out) :: error
+      type(contact_motion_type) :: next
+      type(hits_type) :: found
+      real(wp) :: gaps(scene%rows%n)
+      logical :: good
+
+      call advance_smoothly(scene, motion, span%dt, span%beta, next, error, span%held)
+      if (allocated(error)) return
+      call find_hits(scene, motion, next, span, found, error)
+      if (allocated(error)) return
+      good = found%n > 0
+      if (good) then
+         hits = found
+         call find_impact(scene, motion, next, span, hits, tau, at, error)
+         if (allocated(error) .or. .not. tau > 0.0_wp) return
+         gaps = row_gaps(scene%rows, at%motion)
+         good = tau > bracket(1) .and. tau < bracket(2) .and. minval(abs(gaps(hits%row(:hits%n)))) &
+               <= span%gap_limit*(merge_gap_tolerance/gap_tolerance)
+      end if
+      if (good) return
+      tau = sum(bracket)/2.0_wp
+      call advance_smoothly(scene, motion, tau, span%beta, at, error, span%held)
+   end subroutine look_again
 
    !> Which rows take part in the impact: all that close and are at the wall now, or will be within
    !> the merging time; rows at rest that are pressed against the wall are captured without impact.
@@ -260,7 +288,8 @@ contains
       impact%plastic = progress%at_limit
       impact%rate_limit = rate_tolerance*rate_size(scene%rows, motion%motion)
       impact%new = may_hit(scene%rows) .and. .not. motion%touching .and. &
-            rates < -impact%rate_limit .and. (gaps <= span%gap_limit*(merge_gap_tolerance/gap_tolerance) .or. &
+            rates < -impact%rate_limit .and. &
+            (gaps <= span%gap_limit*(merge_gap_tolerance/gap_tolerance) .or. &
             gaps <= -merge_time_tolerance*progress%dt*rates)
       ! an impact elsewhere may push a row at the wall; without a rebound of its own it answers at
       ! once

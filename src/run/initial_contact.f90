@@ -32,6 +32,10 @@ module initial_contact
    !> Moved nodes may have other partners: so many rounds at most.
    integer, parameter :: max_rounds = 10
    integer, parameter :: max_sweeps = 500
+   !> The mean gap over the sides around a node is negative where round bodies just touch: the
+   !> functions of a curved side's ends are so on a part of it. That is no more than this part of the
+   !> length which the node stands for.
+   real(wp), parameter :: weighted_share = 0.05_wp
    !> The error of overlapping nodes names so many.
    integer, parameter :: most_named = 5
 
@@ -293,11 +297,13 @@ contains
       call gaps_at_start(scene, start, gaps)
       limit = max(merge_gap_tolerance*gap_size(scene%rows, start, 0.0_wp), &
             merge_gap_tolerance*scene%geometry%size, closed_tolerance*start_size(model, scene))
+      where (gaps >= -weighted_share*scene%rows%weight) gaps = max(0.0_wp, gaps)
       worst = minloc(gaps, dim=1)
       if (gaps(worst) >= -limit) return
       call fail_at(error, model%source, list%rows(worst)%place, &
             overlap_text(list, scene, &
-            merge(gaps, 0.0_wp, list%rows%pair == list%rows(worst)%pair), limit), overlap_cure(model, list%rows(worst)%model_pair))
+            merge(gaps, 0.0_wp, list%rows%pair == list%rows(worst)%pair), limit), &
+            overlap_cure(model, list%rows(worst)%model_pair))
    end subroutine check_overlaps
 
    function overlap_text(list, scene, gaps, limit) result(cause)

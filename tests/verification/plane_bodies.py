@@ -111,7 +111,7 @@ class Deck:
     def pair(self, slave, master, options='', impact='METHOD=TRANSFORMATION', friction=None):
         """*CONTACT PAIR with an interaction of its own."""
         name = f'I{sum(line.count("*SURFACE INTERACTION") for line in self.lines)}'
-        rough = '' if friction is None else f'*FRICTION\n{friction!r}\n'
+        rough = '' if friction is None else f'*FRICTION\n{float(friction)!r}\n'
         return self.add(f'*SURFACE INTERACTION, NAME={name}\n*IMPACT, {impact}\n{rough}'
                         f'*CONTACT PAIR, INTERACTION={name}{options and ", " + options}\n{slave}, {master}')
 
