@@ -16,7 +16,7 @@ module contact_geometry
    implicit none
    private
 
-   public :: contact_geometry_type, new_contact_geometry, find_row_terms
+   public :: contact_geometry_type, new_contact_geometry, allow_gaps, find_row_terms
 
    !> No reach is longer than this multiple of the extent of the nodes.
    real(wp), parameter :: widest_reach = 10.0_wp
@@ -42,6 +42,7 @@ module contact_geometry
       type(amplitude_type), allocatable :: amplitudes(:)
       real(wp), allocatable :: x(:, :)           !! (3, n_nodes) undeformed
       type(row_terms_type) :: frozen             !! the rows that stay as they are
+      real(wp), allocatable :: allowance(:)      !! (n_rows) gap that counts as none, if allocated
    end type contact_geometry_type
 
    !> Positions of all nodes before and after a motion, and how far a node looks for a partner.
@@ -91,6 +92,16 @@ contains
          call place_pass(self, self%passes(i), positions, self%frozen)
       end do
    end subroutine new_contact_geometry
+
+   !> From now on the gaps of all rows are counted from these.
+   subroutine allow_gaps(self, allowance)
+      type(contact_geometry_type), intent(inout) :: self
+      real(wp), intent(in) :: allowance(:)       !! (n_rows)
+
+      if (allocated(self%allowance)) self%frozen%gap = self%frozen%gap + self%allowance
+      self%allowance = allowance
+      self%frozen%gap = self%frozen%gap - allowance
+   end subroutine allow_gaps
 
    !> Whether row i is the first of its pass.
    pure function begins_pass(rows, i) result(begins)
@@ -187,6 +198,7 @@ contains
          else
             call place_on_edge(self, pass, i, positions, normals(:, i - pass%first + 1), terms)
          end if
+         if (allocated(self%allowance)) terms%gap(i) = terms%gap(i) - self%allowance(i)
       end do
    end subroutine place_pass
 
@@ -261,7 +273,8 @@ contains
       real(wp), parameter :: none(3) = 0.0_wp
 
       centre = pass%circle%point(:2)
-      if (pass%circle%amplitude > 0 .and. .not. pass%frozen) centre = centre + pass%circle%motion(:2) &
+      if (pass%circle%amplitude > 0 .and. .not. pass%frozen) centre = centre &
+            + pass%circle%motion(:2) &
             *amplitude_at(self%amplitudes(pass%circle%amplitude), positions%t)
       arm = positions%now(:2, self%rows(i)%node) - centre
       distance = norm2(arm)

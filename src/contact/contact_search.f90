@@ -292,12 +292,34 @@ contains
       if (distance <= 2.0_wp*touch_share*partner%stretch .or. abs(s_free) > 1.0_wp) then
          other = neighbour_of(self, query, edge, s)
          if (other > 0) call turn_normal(self, x_now, query, other, partner, offset)
-         if (other == 0 .and. abs(s_free) > 1.0_wp + 2.0_wp*self%overhang) partner%edge = 0
+         if (lies_beyond(self, x_now, query, other, s_free)) partner%edge = 0
       end if
       partner%gap = dot_product(partner%normal, offset)
       partner%tangent = [-partner%normal(2), partner%normal(1)]
       if (dot_product(partner%normal, query%facing) > query%limit) partner%edge = 0
    end subroutine make_partner
+
+   !> Whether a node is not the vertex's at the end of an edge: there is no other edge and the node
+   !> lies beyond the overhang, or the other edge ends still closer to it, perhaps at an open end.
+   pure function lies_beyond(self, x_now, query, other, s_free) result(beyond)
+      type(target_type), intent(in) :: self
+      real(wp), intent(in) :: x_now(:, :)
+      type(query_type), intent(in) :: query
+      integer, intent(in) :: other               !! edge on the other side of the vertex, or 0
+      real(wp), intent(in) :: s_free             !! place on this edge, not limited to its ends
+      logical :: beyond
+      real(wp) :: s, s_free_other, distance
+
+      if (other == 0) then
+         beyond = abs(s_free) > 1.0_wp + 2.0_wp*self%overhang
+      else
+         beyond = abs(s_free) > 1.0_wp
+         if (.not. beyond) return
+         call project(self, x_now, query, other, s, s_free_other, distance)
+         ! away from the vertex is where one walks on
+         beyond = s_free_other*sign(1.0_wp, s_free) > 1.0_wp
+      end if
+   end function lies_beyond
 
    !> All that belongs to partner%edge and partner%s but the gap.
    pure subroutine set_frame(self, x_now, query, partner, offset)

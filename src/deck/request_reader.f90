@@ -10,6 +10,7 @@ module request_reader
    use steps, only: request_energy_print
    use steps, only: quantity_u, quantity_v, quantity_a, quantity_rf, quantity_s, quantity_e
    use steps, only: quantity_ener, quantity_cf, quantity_cdis, quantity_peeq
+   use steps, only: quantity_cpress, quantity_cslip, quantity_cstate
    use model, only: model_type
    use cards, only: deck_type, card_type, get_name_parameter, get_integer_parameter
    use cards, only: get_word, get_real_parameter, parameter_place, has_parameter
@@ -26,12 +27,14 @@ module request_reader
          'U', 'V', 'A', 'RF']
    character(len=word_length), parameter :: element_words(*) = [character(len=word_length) :: &
          'S', 'E', 'ENER', 'PEEQ']
+   !> CSTR is CalculiX's word for contact stresses.
    character(len=word_length), parameter :: contact_words(*) = [character(len=word_length) :: &
-         'CF', 'CDIS']
+         'CF', 'CDIS', 'CPRESS', 'CSLIP', 'CSTATE', 'CSTR']
    integer, parameter :: node_quantities(*) = [quantity_u, quantity_v, quantity_a, quantity_rf]
    integer, parameter :: element_quantities(*) = [quantity_s, quantity_e, quantity_ener, &
          quantity_peeq]
-   integer, parameter :: contact_quantities(*) = [quantity_cf, quantity_cdis]
+   integer, parameter :: contact_quantities(*) = [quantity_cf, quantity_cdis, quantity_cpress, &
+         quantity_cslip, quantity_cstate, quantity_cpress]
 
 contains
 

@@ -2,16 +2,18 @@
 module effective_system
    use kinds, only: wp, int64
    use errors, only: error_type, new_error, status_numerical
-   use skyline_matrix, only: skyline_type, profile_type
+   use skyline_matrix, only: skyline_type, profile_type, profile_entries
    use skyline_ldlt, only: factorize, solve, ldlt_report_type
    use structure, only: structure_type, freedom_name
-   use effective_matrix, only: assemble_effective
+   use effective_matrix, only: assemble_effective, assemble_sum
    implicit none
    private
 
    public :: effective_system_type, new_effective_system
 
    integer, parameter :: n_slots = 4
+   !> Largest profile, in entries, whose M, C and K are kept beside the factors.
+   integer(int64), parameter :: most_kept = 20000000_int64
 
    !> One factorized matrix.
    type :: slot_type
@@ -24,6 +26,8 @@ module effective_system
    type :: effective_system_type
       private
       type(slot_type) :: slots(n_slots)
+      type(skyline_type) :: parts(3)              !! M, C and K of a linear structure, if kept
+      logical :: has_parts = .false.
       integer :: current = 1
       integer(int64) :: clock = 0
       integer(int64), public :: n_factorizations = 0
@@ -48,6 +52,7 @@ contains
       class(effective_system_type), intent(inout) :: self
       integer :: i
 
+      self%has_parts = .false.
       do i = 1, n_slots
          self%slots(i)%factors = -1.0_wp
          self%slots(i)%last_use = -1
@@ -76,7 +81,15 @@ contains
       end do
       self%current = minloc(self%slots%last_use, dim=1)
       associate (slot => self%slots(self%current))
-         call assemble_effective(structure, profile, d, history, factors, slot%matrix)
+         if (structure%is_linear .and. sum(factors(2:3)) > 0.0_wp .and. &
+               profile_entries(profile) <= most_kept) then
+            if (.not. self%has_parts) call keep_parts(self, structure, profile, d, history)
+            slot%matrix = self%parts(1)
+            slot%matrix%values = factors(1)*self%parts(1)%values &
+                  + factors(2)*self%parts(2)%values + factors(3)*self%parts(3)%values
+         else
+            call assemble_effective(structure, profile, d, history, factors, slot%matrix)
+         end if
          slot%factors = -1.0_wp
          if (.not. slot%matrix%is_diagonal()) self%n_factorizations = self%n_factorizations + 1
          call factorize(slot%matrix, report)
@@ -88,6 +101,21 @@ contains
          slot%last_use = self%clock
       end associate
    end subroutine prepare
+
+   !> M, C and K one by one: steps of many lengths, as between impacts, then need no elements.
+   subroutine keep_parts(self, structure, profile, d, history)
+      class(effective_system_type), intent(inout) :: self
+      type(structure_type), intent(in) :: structure
+      type(profile_type), intent(in) :: profile
+      real(wp), intent(in) :: d(:), history(:)
+      real(wp), parameter :: unit(3, 3) = reshape(real([1, 0, 0, 0, 1, 0, 0, 0, 1], wp), [3, 3])
+      integer :: i
+
+      do i = 1, 3
+         call assemble_sum(structure, profile, d, history, unit(:, i), self%parts(i))
+      end do
+      self%has_parts = .true.
+   end subroutine keep_parts
 
    subroutine name_singular(structure, equation, error)
       type(structure_type), intent(in) :: structure

@@ -14,13 +14,13 @@ module energy_ledger
    private
 
    public :: ledger_type, open_ledger, record_span, record_impact, close_increment
-   public :: record_friction
+   public :: record_friction, record_springs
    public :: group_energies
 
    !> Energies and works since the start of the run.
    type :: ledger_type
       real(wp) :: kinetic = 0.0_wp
-      real(wp) :: strain = 0.0_wp
+      real(wp) :: strain = 0.0_wp               !! with that of contact springs
       real(wp) :: damping = 0.0_wp
       real(wp) :: plastic = 0.0_wp
       real(wp) :: friction = 0.0_wp
@@ -29,6 +29,7 @@ module energy_ledger
       real(wp) :: total = 0.0_wp                !! kinetic and strain
       real(wp) :: balance_error = 0.0_wp        !! total + losses - external work - initial total
       real(wp) :: initial = 0.0_wp
+      real(wp) :: stored(2) = 0.0_wp            !! in contact springs: normal, tangential
       real(wp) :: scale = 0.0_wp                !! largest energy or work met so far
    end type ledger_type
 
@@ -101,6 +102,16 @@ contains
       self%impact_loss = self%impact_loss - work
    end subroutine record_friction
 
+   !> What contact springs hold after a span: not lost, though their forces' work was booked so.
+   pure subroutine record_springs(self, stored)
+      type(ledger_type), intent(inout) :: self
+      real(wp), intent(in) :: stored(2)          !! normal, tangential
+
+      self%impact_loss = self%impact_loss - (stored(1) - self%stored(1))
+      self%friction = self%friction - (stored(2) - self%stored(2))
+      self%stored = stored
+   end subroutine record_springs
+
    !> Energies at the end of an increment and the balance error.
    subroutine close_increment(self, system, state)
       type(ledger_type), intent(inout) :: self
@@ -108,7 +119,8 @@ contains
       type(state_type), intent(in) :: state
 
       self%kinetic = dot_product(state%v, inertia_force(system%structure, state%v))/2.0_wp
-      self%strain = strain_energy(system%structure, state%d, state%history)
+      self%strain = strain_energy(system%structure, state%d, state%history) &
+            + sum(self%stored)
       self%plastic = plastic_work(system%structure, state%history)
       self%total = self%kinetic + self%strain
       self%balance_error = self%total + self%damping + self%plastic + self%friction &

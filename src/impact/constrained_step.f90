@@ -79,6 +79,7 @@ contains
       logical, intent(in), optional :: held(:)
 
       step%to_displacement = max(beta, smallest_beta)*dt**2
+      step%explicit = .not. beta > 0.0_wp
       step%to_velocity = scene%system%newmark%gamma*dt
       if (present(held)) step%held = held
    end subroutine describe_step

@@ -56,12 +56,14 @@ module constraint_rows
 
 contains
 
-   !> Rows whose impacts are jumps of velocity, and that have a partner to hit.
+   !> Rows whose impacts are jumps of velocity, and that have a partner to hit: a node without mass
+   !> has no velocity to jump.
    pure function may_hit(self) result(may)
       type(rows_type), intent(in) :: self
       logical :: may(self%n)
 
-      may = self%law == law_motion .and. self%facing
+      may = self%law == law_motion .or. (self%law == law_closed .and. .not. self%massless)
+      may = may .and. self%facing
    end function may_hit
 
    !> Gaps g = G d + g0 + c(t).

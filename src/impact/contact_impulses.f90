@@ -8,7 +8,7 @@ module contact_impulses
    use structure, only: inertia_force
    use energy_ledger, only: record_impact, record_friction
    use constraint_rows, only: row_gaps, row_rates, row_accelerations, row_curvature, slip_rates, &
-         slip_products, rate_size, gap_size, wall_rates
+         slip_products, rate_size, gap_size, wall_rates, contact_forces, law_penalty
    use impact_scene, only: scene_type, contact_motion_type, note_contact_force, gap_tolerance
    use row_compliance, only: compliance_type, mass_compliance, join_rates, split_forces
    use rough_rows, only: solve_rows
@@ -38,7 +38,7 @@ contains
       call hold_acceleration(scene, motion, motion%touching, error)
    end subroutine restart_acceleration
 
-   !> The same with any rows held.
+   !> The same with any rows held. Contact springs push as they are.
    subroutine hold_acceleration(scene, motion, held, error)
       type(scene_type), intent(inout) :: scene
       type(contact_motion_type), intent(inout) :: motion
@@ -53,11 +53,11 @@ contains
       call mass_compliance(scene, held, compliance, error)
       if (allocated(error)) return
       motion%motion%a = merge(motion%motion%a, 0.0_wp, scene%system%structure%map%prescribed)
+      call find_spring_forces(scene, motion)
       force = force_balance(scene%system, motion%motion) &
-            - inertia_force(scene%system%structure, motion%motion%a)
+            - inertia_force(scene%system%structure, motion%motion%a) &
+            + contact_forces(scene%rows, motion%lambda, motion%tau, size(force))
       motion%motion%a = motion%motion%a + solve_mass(scene%system, force)
-      motion%lambda = 0.0_wp
-      motion%tau = 0.0_wp
       if (compliance%n > 0) then
          q = join_rates(compliance, row_accelerations(scene%rows, motion%motion%a) &
                + row_curvature(scene%rows, motion%motion), &
@@ -77,6 +77,19 @@ contains
             abs(motion%tau) >= scene%rows%friction*motion%lambda*(1.0_wp - slip_tolerance)
       call note_contact_force(scene, motion)
    end subroutine hold_acceleration
+
+   !> Forces of contact springs where they are, stiffness times overlap; their friction as it was,
+   !> within its limit now. Nothing in other rows.
+   subroutine find_spring_forces(scene, motion)
+      type(scene_type), intent(in) :: scene
+      type(contact_motion_type), intent(inout) :: motion
+      real(wp) :: limit(scene%rows%n)
+
+      motion%lambda = scene%rows%stiffness*max(0.0_wp, -row_gaps(scene%rows, motion%motion))
+      motion%lambda = merge(motion%lambda, 0.0_wp, scene%rows%law == law_penalty)
+      limit = scene%rows%friction*motion%lambda
+      motion%tau = max(-limit, min(limit, motion%tau))
+   end subroutine find_spring_forces
 
    !> Which way rows slide, 0 where they do not.
    function slip_senses(scene, motion) result(sense)

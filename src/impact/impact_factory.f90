@@ -4,13 +4,15 @@ module impact_factory
    use errors, only: error_type
    use places, only: fail_at
    use model, only: model_type
-   use surfaces, only: interaction_type, method_fictitious_force
+   use surfaces, only: interaction_type, method_fictitious_force, method_penalty, method_lagrange
    use contact_pairs, only: contact_pair_list_type
    use impact_scene, only: impact_settings_type
    use impact_method, only: impact_method_type
    use no_impact, only: no_impact_type
    use transformation, only: transformation_type
    use fictitious_force, only: fictitious_force_type
+   use penalty_method, only: penalty_method_type
+   use lagrange_multiplier, only: lagrange_multiplier_type
    implicit none
    private
 
@@ -41,6 +43,7 @@ contains
                'one run has one of each; RESTITUTION and CAPTURE may differ')
          return
       end do
+      settings%method = first%method
       settings%beta_choice = first%beta_choice
       settings%beta = first%beta
       settings%max_events = first%max_events
@@ -52,6 +55,10 @@ contains
       select case (first%method)
       case (method_fictitious_force)
          allocate (fictitious_force_type :: method)
+      case (method_penalty)
+         allocate (penalty_method_type :: method)
+      case (method_lagrange)
+         allocate (lagrange_multiplier_type :: method)
       case default
          allocate (transformation_type :: method)
       end select

@@ -2,12 +2,13 @@
 !> the record of events.
 module impact_scene
    use kinds, only: wp, int64
-   use surfaces, only: beta_automatic
+   use surfaces, only: beta_automatic, method_transformation
    use motion_state, only: state_type
    use equation_of_motion, only: system_type
-   use energy_ledger, only: ledger_type, record_span, record_friction
+   use energy_ledger, only: ledger_type, record_span, record_friction, record_springs
    use contact_geometry, only: contact_geometry_type
-   use constraint_rows, only: rows_type, row_accelerations, contact_forces, slip_increments
+   use constraint_rows, only: rows_type, row_accelerations, contact_forces, slip_increments, &
+         law_penalty
    implicit none
    private
 
@@ -19,7 +20,7 @@ module impact_scene
    integer, parameter :: event_impact = 1     !! velocity jump
    integer, parameter :: event_capture = 2    !! a row begins sustained contact
    integer, parameter :: event_release = 3    !! a row ends sustained contact
-   integer, parameter :: event_contact = 4    !! first overlap, fictitious force
+   integer, parameter :: event_contact = 4    !! first overlap: fictitious force, penalty
    integer, parameter :: event_limit = 5      !! the limit of events in a step was reached
 
    !> Iterations whose residuals are remembered.
@@ -60,6 +61,7 @@ module impact_scene
 
    !> What the deck says of the method.
    type :: impact_settings_type
+      integer :: method = method_transformation
       integer :: beta_choice = beta_automatic
       real(wp) :: beta = 0.0_wp
       integer :: max_events = 100
@@ -84,6 +86,7 @@ module impact_scene
       integer :: n_residuals = 0                 !! Newton iterations of the last solution
       real(wp) :: residuals(max_residuals) = 0.0_wp   !! after each, of the largest force
       integer(int64) :: n_iterations = 0         !! of Newton's method and of the fictitious force
+      integer(int64) :: n_cycles = 0             !! of them that did not settle on a set of rows
    end type scene_type
 
 contains
@@ -151,13 +154,29 @@ contains
       real(wp) :: slip(scene%rows%n)
 
       call record_span(scene%ledger, scene%system, from%motion, to%motion, from%force, to%force)
-      scene%impulse = scene%impulse &
-            + (to%motion%t - from%motion%t)*(from%lambda + to%lambda)/2.0_wp
+      scene%impulse = scene%impulse + (to%motion%t - from%motion%t)*(from%lambda &
+            + scene%system%newmark%gamma*(to%lambda - from%lambda))
+      call record_springs(scene%ledger, [spring_energy(scene, to%lambda), &
+            spring_energy(scene, to%tau)])
       if (.not. any(scene%rows%friction > 0.0_wp)) return
       slip = slip_increments(scene%rows, from%motion, to%motion)
       call record_friction(scene%ledger, -dot_product(slip, from%tau + to%tau)/2.0_wp)
       where (to%lambda > 0.0_wp) to%slip = to%slip + abs(slip)
    end subroutine accept_span
+
+   !> Energy of contact springs under forces along them.
+   pure function spring_energy(scene, force) result(energy)
+      type(scene_type), intent(in) :: scene
+      real(wp), intent(in) :: force(:)           !! (n_rows)
+      real(wp) :: energy
+      integer :: i
+
+      energy = 0.0_wp
+      do i = 1, scene%rows%n
+         if (scene%rows%law(i) /= law_penalty) cycle
+         energy = energy + force(i)**2/(2.0_wp*scene%rows%stiffness(i))
+      end do
+   end function spring_energy
 
    !> Speed below which a rebound is captured, by rows: the deck's, or such that all the bounces
    !> that

@@ -3,7 +3,7 @@
 module impact_time
    use kinds, only: wp
    use errors, only: error_type
-   use constraint_rows, only: row_gaps, row_rates, row_accelerations, may_hit
+   use constraint_rows, only: row_gaps, row_rates, row_accelerations, may_hit, far_gap
    use impact_scene, only: scene_type, contact_motion_type
    use constrained_step, only: advance_smoothly
    use gap_path, only: path_type, new_path, path_value, find_dip, find_rise
@@ -17,6 +17,7 @@ module impact_time
       real(wp) :: dt = 0.0_wp
       real(wp) :: beta = 0.25_wp
       logical, allocatable :: held(:)        !! (n_rows) rows held bilaterally in every trial
+      real(wp), allocatable :: gaps(:)       !! (n_rows) at the start, by rows at their places there
       real(wp) :: gap_limit = 0.0_wp         !! smaller gaps are round-off
       real(wp) :: rate_limit = 0.0_wp        !! smaller gap rates are round-off
    end type span_type
@@ -58,7 +59,7 @@ contains
       integer :: i
 
       allocate (hits%row(scene%rows%n), hits%low(scene%rows%n), hits%high(scene%rows%n))
-      g0 = row_gaps(scene%rows, from%motion)
+      g0 = start_gaps(scene, from, span)
       r0 = row_rates(scene%rows, from%motion)
       a0 = row_accelerations(scene%rows, from%motion%a)
       g1 = row_gaps(scene%rows, to%motion)
@@ -75,6 +76,18 @@ contains
          hits%high(hits%n) = bracket(2)
       end do
    end subroutine find_hits
+
+   !> Gaps at the start of the span; rows that are placed at its end see them on a tangent.
+   function start_gaps(scene, from, span) result(gaps)
+      type(scene_type), intent(in) :: scene
+      type(contact_motion_type), intent(in) :: from
+      type(span_type), intent(in) :: span
+      real(wp) :: gaps(scene%rows%n)
+
+      gaps = row_gaps(scene%rows, from%motion)
+      if (.not. scene%rows%moving) return
+      where (span%gaps < far_gap/2.0_wp) gaps = span%gaps
+   end function start_gaps
 
    !> Between which times a row is hit, negative if it is not. A row that starts slightly overlapped
    !> and opens is not.
@@ -164,7 +177,7 @@ contains
       integer :: i
 
       free = may_hit(scene%rows) .and. .not. from%touching
-      g0 = row_gaps(scene%rows, from%motion)
+      g0 = start_gaps(scene, from, span)
       gaps = row_gaps(scene%rows, at%motion)
       do i = 1, scene%rows%n
          if (.not. free(i) .or. any(hits%row(:hits%n) == i)) cycle

@@ -106,6 +106,7 @@ contains
       if (.not. scene%settings%direct) then
          call iterate_forces(scene, w, free_gaps, lambda, solved)
          if (solved .and. all(lambda >= 0.0_wp)) return
+         scene%n_cycles = scene%n_cycles + 1
       end if
       alpha = scene%settings%return_parameter
       call solve_complementarity((1.0_wp + alpha)/alpha*w, free_gaps, lambda, solved)

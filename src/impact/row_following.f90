@@ -4,7 +4,7 @@ module row_following
    use kinds, only: wp
    use errors, only: error_type
    use motion_state, only: state_type
-   use constraint_rows, only: row_gaps, row_rates, row_curvature, rate_size
+   use constraint_rows, only: row_gaps, row_rates, row_curvature, rate_size, law_penalty
    use row_placement, only: place_rows
    use impact_scene, only: scene_type, contact_motion_type, event_type, record_event, &
          event_release, rate_tolerance
@@ -13,7 +13,7 @@ module row_following
    implicit none
    private
 
-   public :: rows_ahead, rows_here, settle_rows
+   public :: rows_ahead, rows_at, rows_here, settle_rows
 
    !> A node looks for partners as far as this multiple of the largest motion in the step.
    real(wp), parameter :: reach_factor = 4.0_wp
@@ -44,10 +44,20 @@ contains
       if (.not. any(motion%touching)) return
       call advance_smoothly(scene, motion, dt, scene%system%newmark%beta, trial, error)
       if (allocated(error)) return
-      call place_rows(scene%rows, scene%geometry, scene%system%structure%map, motion%motion, &
-            trial%motion, reach(scene, motion, dt))
-      call find_curvature(scene, motion, trial%motion, dt)
+      call rows_at(scene, motion, trial, dt)
    end subroutine rows_ahead
+
+   !> Rows where a motion has led to.
+   subroutine rows_at(scene, from, to, dt)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(in) :: from, to
+      real(wp), intent(in) :: dt                 !! of a step, for how far rows look for partners
+
+      if (.not. scene%rows%moving) return
+      call place_rows(scene%rows, scene%geometry, scene%system%structure%map, from%motion, &
+            to%motion, reach(scene, from, dt))
+      call find_curvature(scene, from, to%motion, dt)
+   end subroutine rows_at
 
    !> The part of gap accelerations that comes from rows turning: in closed form for a node on an
    !> edge, by a difference along the motion for rows weighted over edges.
@@ -86,6 +96,7 @@ contains
             motion%motion, reach(scene, motion, dt))
    end subroutine rows_here
 
+   !> How far rows look for partners: what may be gone in the step, and how deep springs are in.
    pure function reach(scene, motion, dt) result(distance)
       type(scene_type), intent(in) :: scene
       type(contact_motion_type), intent(in) :: motion
@@ -94,6 +105,8 @@ contains
       real(wp), parameter :: least_share = 1.0e-6_wp
 
       distance = reach_factor*dt*(maxval(abs(motion%motion%v)) + dt*maxval(abs(motion%motion%a)))
+      if (any(scene%rows%law == law_penalty)) distance = distance + maxval( &
+            motion%lambda/scene%rows%stiffness, mask=scene%rows%law == law_penalty)
       distance = max(distance, least_share*scene%geometry%size)
    end function reach
 

@@ -19,10 +19,10 @@ module step_contact
    !> displacement.
    type :: contact_step_type
       logical :: static = .false.
+      logical :: explicit = .false.              !! forces at the end do not move the end
       real(wp) :: to_displacement = 1.0_wp       !! beta h^2: displacement by acceleration
       real(wp) :: to_velocity = 1.0_wp           !! gamma h
-      logical, allocatable :: held(:)            !! (n_rows) touching rows, held bilaterally; if not
-                                                 !! allocated their forces push only
+      logical, allocatable :: held(:)            !! (n_rows) held bilaterally; without it rows push
    end type contact_step_type
 
    !> Explicit steps (beta = 0) find penalty forces from the predictor: as with so small a beta.
@@ -81,7 +81,8 @@ contains
       type(contact_step_type), intent(in) :: step
       logical :: on(scene%rows%n)
 
-      on = scene%rows%law == law_closed .or. scene%rows%law == law_penalty
+      on = scene%rows%law == law_closed .and. (scene%rows%massless .or. .not. step%explicit)
+      on = on .or. scene%rows%law == law_penalty
       if (any(scene%rows%friction > 0.0_wp)) on = on .or. scene%rows%law == law_overlap
       on = on .or. step%static
    end function on_displacement
@@ -114,8 +115,8 @@ contains
       delta = delta + matmul(compliance%x, forces)
    end subroutine find_forces
 
-   !> What the law of a row adds to its compliance: the spring of a penalty; for the fictitious force
-   !> ((1 + alpha)/alpha) W, so that the overlap left is g_free/(1 + alpha).
+   !> What the law of a row adds to its compliance: the spring of a penalty; for the fictitious
+   !> force ((1 + alpha)/alpha) W, so that the overlap left is g_free/(1 + alpha).
    pure subroutine set_law(scene, step, touching, compliance, w)
       type(scene_type), intent(in) :: scene
       type(contact_step_type), intent(in) :: step
@@ -180,8 +181,8 @@ contains
       motion = motion/step%to_displacement
       if (.not. step%static) then
          where (.not. by_slip) motion = slip_rates(scene%rows, to%motion)/step%to_velocity
-         where (scene%rows%law == law_motion .and. from%sticking .and. .not. by_slip) &
-               motion = slip_products(scene%rows, to%motion%a)
+         where (to%touching .and. from%sticking .and. .not. (by_slip .or. scene%rows%law == &
+               law_overlap)) motion = slip_products(scene%rows, to%motion%a)
       end if
       motion = motion + slip_products(scene%rows, delta)
    end function slip_motion

@@ -14,6 +14,7 @@ module steps
    public :: request_contact_print, request_contact_file, request_energy_print
    public :: quantity_u, quantity_v, quantity_a, quantity_rf, quantity_s, quantity_e
    public :: quantity_ener, quantity_cf, quantity_cdis, quantity_peeq, n_quantities
+   public :: quantity_cpress, quantity_cslip, quantity_cstate
 
    integer, parameter :: procedure_static = 1
    integer, parameter :: procedure_dynamic = 2
@@ -37,7 +38,10 @@ module steps
    integer, parameter :: quantity_cf = 8
    integer, parameter :: quantity_cdis = 9
    integer, parameter :: quantity_peeq = 10
-   integer, parameter :: n_quantities = 10
+   integer, parameter :: quantity_cpress = 11
+   integer, parameter :: quantity_cslip = 12
+   integer, parameter :: quantity_cstate = 13
+   integer, parameter :: n_quantities = 13
 
    !> One PRINT or FILE card.
    type :: request_type

@@ -1,17 +1,19 @@
 !> Writes /VTKHDF: the mesh as points and cells, and frames of fields on it.
 module grid_recorder
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use kinds, only: wp
    use errors, only: error_type
    use model, only: model_type
    use mesh, only: is_solid_kind, solid_topology
    use steps, only: quantity_u, quantity_v, quantity_a, quantity_rf, quantity_cf, &
-         quantity_cdis, n_quantities
+         quantity_cdis, quantity_cpress, quantity_cslip, quantity_cstate, n_quantities
    use contact_pairs, only: contact_pair_list_type
    use impact_scene, only: scene_type
    use hdf5_file, only: hdf5_file_type
    use vtkhdf_grid, only: vtkhdf_grid_type
    use output_plan, only: plan_type
    use snapshot, only: snapshot_type, on_nodes
+   use gap_probe, only: not_a_number
    use element_fields, only: element_fields_type, new_element_fields, set_element_fields
    implicit none
    private
@@ -32,13 +34,18 @@ module grid_recorder
    integer, parameter :: solid_types(4) = [5, 9, 22, 23]
 
    !> Quantities at nodes; those of elements are element_fields' business.
-   integer, parameter :: nodal(6) = [quantity_u, quantity_v, quantity_a, quantity_rf, quantity_cf, &
-         quantity_cdis]
-   character(len=4), parameter :: names(6) = ['U   ', 'V   ', 'A   ', 'RF  ', 'CF  ', 'CDIS']
-   character(len=34), parameter :: meanings(6) = [ &
-         'displacement                      ', 'velocity                          ', &
-         'acceleration                      ', 'reaction force                    ', &
-         'contact force                     ', 'gap of contact nodes, 0 at others ']
+   integer, parameter :: nodal(9) = [quantity_u, quantity_v, quantity_a, quantity_rf, quantity_cf, &
+         quantity_cdis, quantity_cpress, quantity_cslip, quantity_cstate]
+   integer, parameter :: n_components(9) = [3, 3, 3, 3, 3, 1, 1, 1, 1]
+   character(len=6), parameter :: names(9) = ['U     ', 'V     ', 'A     ', 'RF    ', 'CF    ', &
+         'CDIS  ', 'CPRESS', 'CSLIP ', 'CSTATE']
+   character(len=83), parameter :: meanings(9) = [character(len=83) :: &
+         'displacement', 'velocity', 'acceleration', 'reaction force', &
+         'contact force, with friction', &
+         'smallest gap of contact nodes, NaN where nothing is near, 0 at other nodes', &
+         'contact pressure at slave nodes; 0 at surfaces made of nodes, which have no area', &
+         'path that contact nodes have slid along their partners, where there is friction', &
+         '0 no contact node, 1 open, 2 touching (sticking if there is friction), 3 sliding']
 
 contains
 
@@ -110,14 +117,8 @@ contains
       integer :: i
 
       i = findloc(nodal, q, dim=1)
-      select case (q)
-      case (quantity_cdis)
-         call self%grid%add_point_field(file, trim(names(i)), 1, trim(meanings(i)), &
-               self%field(q), error)
-      case default
-         call self%grid%add_point_field(file, trim(names(i)), 3, trim(meanings(i)), &
-               self%field(q), error)
-      end select
+      call self%grid%add_point_field(file, trim(names(i)), n_components(i), trim(meanings(i)), &
+            self%field(q), error)
    end subroutine add_field
 
    !> Appends a frame.
@@ -135,6 +136,9 @@ contains
       call set(quantity_rf, snapshot%rf)
       call set(quantity_cf, snapshot%cf)
       call set_gaps(self, scene, list, snapshot)
+      call set_largest(quantity_cpress, snapshot%pressure)
+      call set_largest(quantity_cslip, snapshot%slip)
+      call set_largest(quantity_cstate, real(snapshot%state, wp))
       call set_element_fields(self%element_fields, self%grid, scene, snapshot)
       call self%grid%append_frame(file, snapshot%time, error)
 
@@ -149,8 +153,27 @@ contains
                on_nodes(scene%system%structure%map%freedom, values))
       end subroutine set
 
+      !> Of a node with several rows, the largest value.
+      subroutine set_largest(q, values)
+         integer, intent(in) :: q
+         real(wp), intent(in) :: values(:)       !! (n_rows)
+         real(wp) :: largest(size(scene%system%structure%map%freedom, 2))
+         integer :: i
+
+         if (self%field(q) == 0) return
+         largest = 0.0_wp
+         largest(list%rows%node) = -huge(1.0_wp)
+         do i = 1, size(list%rows)
+            associate (node => list%rows(i)%node)
+               largest(node) = max(largest(node), values(i))
+            end associate
+         end do
+         call self%grid%set_values(self%field(q), largest)
+      end subroutine set_largest
+
    end subroutine record_frame
 
+   !> Of a node with several rows, the smallest gap.
    subroutine set_gaps(self, scene, list, snapshot)
       type(grid_type), intent(inout) :: self
       type(scene_type), intent(in) :: scene
@@ -161,8 +184,13 @@ contains
 
       if (self%field(quantity_cdis) == 0) return
       gap = 0.0_wp
+      gap(list%rows%node) = not_a_number()
       do i = 1, size(list%rows)
-         gap(list%rows(i)%node) = snapshot%gap(i)
+         associate (node => list%rows(i)%node)
+            if (ieee_is_nan(snapshot%gap(i))) cycle
+            if (ieee_is_nan(gap(node))) gap(node) = snapshot%gap(i)
+            gap(node) = min(gap(node), snapshot%gap(i))
+         end associate
       end do
       call self%grid%set_values(self%field(quantity_cdis), gap)
    end subroutine set_gaps

@@ -33,12 +33,13 @@ module hdf5_file
       procedure :: write_bytes
       procedure :: create_series
       procedure :: create_text_series
-      generic :: write_dataset => write_reals, write_real_table, write_integers, write_text, &
-            write_texts
+      generic :: write_dataset => write_reals, write_real_table, write_integers, &
+            write_integer_table, write_text, write_texts
       generic :: set_attribute => set_integer, set_integers, set_real, set_text
       generic :: append => append_reals, append_real_table, append_integers, append_longs, &
             append_texts
-      procedure, private :: write_reals, write_real_table, write_integers, write_text, write_texts
+      procedure, private :: write_reals, write_real_table, write_integers, write_integer_table
+      procedure, private :: write_text, write_texts
       procedure, private :: set_integer, set_integers, set_real, set_text
       procedure, private :: append_reals, append_real_table, append_integers, append_longs
       procedure, private :: append_texts
@@ -133,6 +134,18 @@ contains
             failed)
       call describe(self, path, description, failed, error)
    end subroutine write_integers
+
+   subroutine write_integer_table(self, path, values, description, error)
+      class(hdf5_file_type), intent(in) :: self
+      character(len=*), intent(in) :: path, description
+      integer, intent(in), contiguous, target :: values(:, :)
+      type(error_type), allocatable, intent(out) :: error
+      logical :: failed
+
+      call put_dataset(self%id, path, integer_storage(), shape(values, hsize_t), c_loc(values), &
+            failed)
+      call describe(self, path, description, failed, error)
+   end subroutine write_integer_table
 
    !> Integers 0 to 255, stored as unsigned 8 bit numbers.
    subroutine write_bytes(self, path, values, description, error)

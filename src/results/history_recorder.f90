@@ -1,11 +1,13 @@
 !> Writes /history: one column a printed component, one row an increment.
 module history_recorder
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use kinds, only: wp
    use errors, only: error_type
    use text, only: to_text
    use model, only: model_type
    use steps, only: quantity_u, quantity_v, quantity_a, quantity_rf, quantity_s, quantity_e, &
-         quantity_ener, quantity_cf, quantity_cdis, quantity_peeq, n_quantities
+         quantity_ener, quantity_cf, quantity_cdis, quantity_peeq, quantity_cpress, &
+         quantity_cslip, quantity_cstate, n_quantities
    use element_interface, only: n_recovered, recovered_stress, recovered_strain, recovered_peeq, &
          recovered_energy
    use contact_pairs, only: contact_pair_list_type
@@ -13,7 +15,8 @@ module history_recorder
    use hdf5_file, only: hdf5_file_type
    use column_table, only: column_table_type
    use output_plan, only: plan_type
-   use snapshot, only: snapshot_type, element_values
+   use snapshot, only: snapshot_type, element_values, state_open
+   use gap_probe, only: not_a_number
    implicit none
    private
 
@@ -40,6 +43,15 @@ module history_recorder
    character(len=2), parameter :: names(4) = ['U ', 'V ', 'A ', 'RF']
    character(len=12), parameter :: meanings(4) = &
          ['displacement', 'velocity    ', 'acceleration', 'reaction    ']
+
+   !> What is said of a whole pair, beside its force and impulse.
+   integer, parameter :: pair_quantities(4) = [quantity_cdis, quantity_cslip, quantity_cstate, &
+         quantity_cpress]
+   character(len=6), parameter :: pair_columns(4) = ['CDIS  ', 'CSLIP ', 'CNUM  ', 'CPRESS']
+   character(len=72), parameter :: pair_meanings(4) = [character(len=72) :: &
+         'smallest gap of the pair, negative in overlap; NaN where nothing is near', &
+         'longest path that a node of the pair has slid along its partner', &
+         'number of nodes in contact', 'largest contact pressure of the pair']
 
 contains
 
@@ -171,17 +183,20 @@ contains
          if (plan%contact_print(quantity_cf)) then
             do i = 1, 3
                call add(self, file, column_type(quantity_cf, p, 0, i), group//'CF'//to_text(i), &
-                     'total contact force on the slave in direction '//to_text(i), error)
+                     'total contact force with friction on the slave in direction ' &
+                     //to_text(i), error)
                if (allocated(error)) return
             end do
             call add(self, file, column_type(impulse_column, p, 0, 0), group//'impulse', &
                   'normal contact impulse of the increment, impacts included', error)
             if (allocated(error)) return
          end if
-         if (.not. plan%contact_print(quantity_cdis)) cycle
-         call add(self, file, column_type(quantity_cdis, p, 0, 0), group//'CDIS', &
-               'smallest gap of the pair, negative in overlap', error)
-         if (allocated(error)) return
+         do i = 1, size(pair_quantities)
+            if (.not. plan%contact_print(pair_quantities(i))) cycle
+            call add(self, file, column_type(pair_quantities(i), p, 0, 0), &
+                  group//trim(pair_columns(i)), trim(pair_meanings(i)), error)
+            if (allocated(error)) return
+         end do
       end do
    end subroutine add_pairs
 
@@ -242,14 +257,36 @@ contains
       case (quantity_s, quantity_e, quantity_ener, quantity_peeq)
          values = element_values(scene, column%group, column%item, snapshot)
          value = values(column%component)
-      case (quantity_cf)
-         value = sum(snapshot%lambda*scene%rows%normal(column%component, :), &
-               mask=list%rows%pair == column%item)
-      case (impulse_column)
-         value = sum(snapshot%impulse, mask=list%rows%pair == column%item)
       case default
-         value = minval(snapshot%gap, mask=list%rows%pair == column%item)
+         value = value_of_pair(column, list, snapshot)
       end select
    end function value_of
+
+   !> A value over all rows of a pair.
+   function value_of_pair(column, list, snapshot) result(value)
+      type(column_type), intent(in) :: column
+      type(contact_pair_list_type), intent(in) :: list
+      type(snapshot_type), intent(in) :: snapshot
+      real(wp) :: value
+      logical :: own(size(list%rows))
+
+      own = list%rows%pair == column%item
+      select case (column%quantity)
+      case (quantity_cf)
+         value = sum(snapshot%force(column%component, :), mask=own)
+      case (impulse_column)
+         value = sum(snapshot%impulse, mask=own)
+      case (quantity_cslip)
+         value = maxval(snapshot%slip, mask=own)
+      case (quantity_cstate)
+         value = real(count(own .and. snapshot%state > state_open), wp)
+      case (quantity_cpress)
+         value = maxval(snapshot%pressure, mask=own)
+      case default
+         own = own .and. .not. ieee_is_nan(snapshot%gap)
+         value = not_a_number()
+         if (any(own)) value = minval(snapshot%gap, mask=own)
+      end select
+   end function value_of_pair
 
 end module history_recorder

@@ -2,7 +2,8 @@
 module output_plan
    use model, only: model_type
    use steps, only: request_type, n_quantities, procedure_frequency, request_node_print, &
-         request_element_print, request_contact_print, request_energy_print
+         request_element_print, request_contact_print, request_energy_print, quantity_cf, &
+         quantity_cdis, quantity_cpress, quantity_cslip, quantity_cstate
    implicit none
    private
 
@@ -20,7 +21,8 @@ module output_plan
 
 contains
 
-   !> Gathers the requests of all steps.
+   !> Gathers the requests of all steps. Contact forces come with pressures (printed: the number
+   !> of touching nodes), gaps with slip and state.
    subroutine new_plan(self, model)
       type(plan_type), intent(out) :: self
       type(model_type), intent(in) :: model
@@ -65,10 +67,14 @@ contains
          end do
       case (request_contact_print)
          self%contact_print = self%contact_print .or. request%wanted
+         if (request%wanted(quantity_cf)) self%contact_print(quantity_cstate) = .true.
+         if (request%wanted(quantity_cdis)) self%contact_print(quantity_cslip) = .true.
       case (request_energy_print)
          self%energy = .true.
       case default
          self%file = self%file .or. request%wanted
+         if (request%wanted(quantity_cf)) self%file(quantity_cpress) = .true.
+         if (request%wanted(quantity_cdis)) self%file([quantity_cslip, quantity_cstate]) = .true.
       end select
    end subroutine add_request
 

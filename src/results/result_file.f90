@@ -3,20 +3,24 @@ module result_file
    use kinds, only: wp
    use errors, only: error_type
    use model, only: model_type
-   use places, only: source_type
    use steps, only: request_type, request_node_print, request_element_print, &
          request_contact_print, request_energy_print, request_node_file, request_element_file, &
-         request_contact_file
+         request_contact_file, quantity_cf, quantity_cdis, quantity_cpress, &
+         quantity_cstate
    use contact_pairs, only: contact_pair_list_type
    use impact_scene, only: scene_type, contact_motion_type, event_impact, event_capture, &
          event_release, event_contact
    use hdf5_file, only: hdf5_file_type
    use column_table, only: column_table_type
    use output_plan, only: plan_type, new_plan, is_due
-   use snapshot, only: snapshot_type, take_snapshot
+   use snapshot, only: snapshot_type, take_snapshot, state_stuck
    use history_recorder, only: history_type, new_history, record_history
    use energy_recorder, only: new_energies, record_energies
    use grid_recorder, only: grid_type, new_grid, record_frame
+   use model_recorder, only: write_model
+   use gap_probe, only: gap_probe_type, new_gap_probe, probe_gaps
+   use contact_faces, only: contact_face_type, new_contact_faces, find_pressures, find_row_forces, &
+         share_contact
    implicit none
    private
 
@@ -31,6 +35,8 @@ module result_file
       type(history_type) :: history
       type(column_table_type) :: energy
       type(column_table_type) :: events
+      type(gap_probe_type) :: gaps
+      type(contact_face_type), allocatable :: faces(:)
       integer :: n_elements = 0
    end type result_file_type
 
@@ -61,7 +67,9 @@ contains
       if (allocated(error)) return
       call new_events(self, error)
       if (allocated(error)) return
-      call write_model(self, model, error)
+      call new_gap_probe(self%gaps, scene)
+      call new_contact_faces(self%faces, model, list)
+      call write_model(self%file, model, error)
    end subroutine open_results
 
    subroutine new_events(self, error)
@@ -91,57 +99,6 @@ contains
       call self%events%add_text_column(self%file, 'pair', text_length, &
             'name of the contact pair', error)
    end subroutine new_events
-
-   !> The deck's text and the rigid planes.
-   subroutine write_model(self, model, error)
-      type(result_file_type), intent(inout) :: self
-      type(model_type), intent(in) :: model
-      type(error_type), allocatable, intent(out) :: error
-      real(wp), allocatable :: planes(:, :)
-      integer :: i
-
-      call self%file%create_group('/model', 'what was computed and by what', error)
-      if (allocated(error)) return
-      call self%file%write_dataset('/model/deck', deck_text(model%source), &
-            'the deck, included files behind it', error)
-      if (allocated(error)) return
-      call self%file%write_dataset('/model/node_id', model%nodes%id(:model%nodes%n), &
-            'ids of the nodes in the deck, in the order of the points', error)
-      if (allocated(error)) return
-      call self%file%write_dataset('/model/element_id', model%elements%id(:model%elements%n), &
-            'ids of the elements in the deck, in the order of the cells', error)
-      if (allocated(error) .or. size(model%rigid_surfaces) == 0) return
-      allocate (planes(6, size(model%rigid_surfaces)))
-      do i = 1, size(planes, 2)
-         planes(:, i) = [model%rigid_surfaces(i)%point, model%rigid_surfaces(i)%normal]
-      end do
-      call self%file%write_dataset('/model/rigid_planes', planes, &
-            'a point and the outward normal of each rigid plane at the start', error)
-   end subroutine write_model
-
-   pure function deck_text(source) result(text)
-      type(source_type), intent(in) :: source
-      character(len=:), allocatable :: text
-      integer :: f, i, n
-
-      n = 0
-      do f = 1, source%n_files
-         do i = 1, source%files(f)%n_lines
-            n = n + len(source%files(f)%lines(i)%text) + 1
-         end do
-      end do
-      allocate (character(len=n) :: text)
-      n = 0
-      do f = 1, source%n_files
-         do i = 1, source%files(f)%n_lines
-            associate (line => source%files(f)%lines(i)%text)
-               text(n + 1:n + len(line)) = line
-               n = n + len(line) + 1
-               text(n:n) = new_line('a')
-            end associate
-         end do
-      end do
-   end function deck_text
 
    !> The equations of the first step: column heights of K*, columns of implicit elements; settings.
    subroutine write_system(self, scene, version, implicit_equation, error)
@@ -231,10 +188,32 @@ contains
       if (allocated(error) .or. .not. (print_due .or. frame_due)) return
       call take_snapshot(snapshot, scene, motion, self%history%needs_reactions &
             .or. self%grid%needs_reactions)
+      call measure_contact(self, scene, list, motion, snapshot)
       if (print_due) call record_history(self%history, self%file, scene, list, snapshot, error)
       if (allocated(error)) return
       if (frame_due) call record_frame(self%grid, self%file, scene, list, snapshot, error)
    end subroutine record_increment
+
+   !> What of contact has to be computed for the records alone.
+   subroutine measure_contact(self, scene, list, motion, snapshot)
+      type(result_file_type), intent(inout) :: self
+      type(scene_type), intent(in) :: scene
+      type(contact_pair_list_type), intent(in) :: list
+      type(contact_motion_type), intent(in) :: motion
+      type(snapshot_type), intent(inout) :: snapshot
+      logical :: wanted(size(self%plan%file))
+
+      if (scene%rows%n == 0) return
+      wanted = self%plan%file .or. self%plan%contact_print
+      if (wanted(quantity_cdis)) call probe_gaps(self%gaps, scene, motion, snapshot%gap)
+      if (wanted(quantity_cpress) .or. wanted(quantity_cstate)) call find_pressures(self%faces, &
+            scene, list, snapshot%lambda, snapshot%pressure)
+      call share_contact(self%faces, scene, list, snapshot%lambda, snapshot%state, snapshot%slip)
+      ! on the axis a pressure makes no force
+      where (snapshot%pressure > 0.0_wp) snapshot%state = max(snapshot%state, state_stuck)
+      if (wanted(quantity_cf)) call find_row_forces(self%faces, scene, list, snapshot%lambda, &
+            snapshot%tau, snapshot%force)
+   end subroutine measure_contact
 
    subroutine record_events(self, scene, list, error)
       type(result_file_type), intent(inout) :: self

@@ -5,17 +5,30 @@ module snapshot
    use reactions, only: reaction_forces
    use constraint_rows, only: row_gaps
    use impact_scene, only: scene_type, contact_motion_type
+   use gap_probe, only: not_a_number
    implicit none
    private
 
    public :: snapshot_type, take_snapshot, on_nodes, element_values, point_values
+   public :: state_none, state_open, state_stuck, state_sliding
+
+   !> What a contact node does.
+   integer, parameter :: state_none = 0       !! no contact node
+   integer, parameter :: state_open = 1
+   integer, parameter :: state_stuck = 2      !! touching, sticking if there is friction
+   integer, parameter :: state_sliding = 3    !! touching, with friction, and sliding
 
    !> Motion and forces on freedoms; gaps and forces of contact rows.
    type :: snapshot_type
       real(wp) :: time = 0.0_wp
       real(wp), allocatable :: u(:), v(:), a(:), rf(:), cf(:)   !! (n_freedoms)
       real(wp), allocatable :: history(:)                       !! (n_history)
-      real(wp), allocatable :: lambda(:), tau(:), gap(:), impulse(:)   !! (n_rows)
+      real(wp), allocatable :: lambda(:), tau(:), impulse(:)    !! (n_rows)
+      real(wp), allocatable :: gap(:)                           !! (n_rows) NaN without a partner
+      real(wp), allocatable :: pressure(:)                      !! (n_rows) zero unless asked for
+      real(wp), allocatable :: force(:, :)                      !! (3, n_rows) likewise
+      real(wp), allocatable :: slip(:)                          !! (n_rows) path so far
+      integer, allocatable :: state(:)                          !! (n_rows) state_ parameters
    end type snapshot_type
 
 contains
@@ -34,12 +47,30 @@ contains
       self%history = motion%motion%history
       self%lambda = motion%lambda
       self%gap = row_gaps(scene%rows, motion%motion)
+      where (.not. scene%rows%facing) self%gap = not_a_number()
+      self%pressure = 0.0_wp*self%lambda
+      allocate (self%force(3, scene%rows%n))
+      self%force = 0.0_wp
+      self%slip = motion%slip
+      self%state = row_states(scene, motion)
       self%impulse = scene%impulse
       self%cf = motion%force
       self%tau = motion%tau
       self%rf = 0.0_wp*self%u
       if (with_reactions) self%rf = reaction_forces(scene%system, motion%motion, self%cf)
    end subroutine take_snapshot
+
+   !> What the contactors of all rows do.
+   pure function row_states(scene, motion) result(states)
+      type(scene_type), intent(in) :: scene
+      type(contact_motion_type), intent(in) :: motion
+      integer :: states(scene%rows%n)
+
+      states = state_open
+      where (motion%touching .or. motion%lambda > 0.0_wp) states = state_stuck
+      where (motion%lambda > 0.0_wp .and. scene%rows%friction > 0.0_wp .and. .not. &
+            motion%sticking) states = state_sliding
+   end function row_states
 
    !> Values on freedoms as three components a node, zero where a freedom does not exist.
    pure function on_nodes(freedom, values) result(vectors)

@@ -6,7 +6,9 @@ module run_report
    use steps, only: procedure_static, procedure_dynamic, procedure_frequency
    use skyline_matrix, only: profile_entries
    use equation_order, only: ordering_type, order_names, n_orders
-   use surfaces, only: beta_given
+   use model, only: model_type
+   use surfaces, only: beta_given, contact_pair_type, rigid_plane, method_fictitious_force, &
+         method_penalty, method_lagrange
    use transformation, only: impact_beta
    use impact_scene, only: event_impact, event_capture, event_release, event_contact, event_limit
    use automatic_groups, only: partition_type
@@ -20,7 +22,7 @@ module run_report
 
 contains
 
-   !> Heading, sizes, notes on the deck.
+   !> Heading, sizes, contact pairs.
    subroutine report_model(simulation, log)
       type(simulation_type), intent(in) :: simulation
       type(log_type), intent(in) :: log
@@ -32,6 +34,7 @@ contains
             //plural(size(simulation%scene%system%structure%groups), 'group')//', ' &
             //plural(simulation%scene%system%structure%map%n_freedoms, 'freedom')//', ' &
             //plural(simulation%scene%rows%n, 'contact row'))
+      call report_pairs(simulation, log)
       if (simulation%partition%n_elements > 0) call report_partition(simulation%partition, log)
    end subroutine report_model
 
@@ -131,6 +134,7 @@ contains
       call report_impact(simulation, log)
    end subroutine report_dynamics
 
+   !> The method of impacts; one run has one.
    subroutine report_impact(simulation, log)
       type(simulation_type), intent(in) :: simulation
       type(log_type), intent(in) :: log
@@ -138,19 +142,78 @@ contains
 
       if (simulation%scene%rows%n == 0) return
       associate (settings => simulation%scene%settings)
-         if (settings%fictitious) then
-            line = '  impact: fictitious force, return parameter ' &
-                  //to_text(settings%return_parameter)
+         select case (settings%method)
+         case (method_fictitious_force)
+            line = 'fictitious force, return parameter '//to_text(settings%return_parameter)
             if (settings%direct) line = line//', fixed point solved directly'
-         else
-            line = '  impact: transformation, beta of the impact step ' &
+         case (method_penalty)
+            associate (k => simulation%scene%rows%stiffness)
+               line = 'penalty, stiffness '//to_text(minval(k))
+               if (maxval(k) > minval(k)) line = line//' to '//to_text(maxval(k))
+            end associate
+         case (method_lagrange)
+            line = 'Lagrange multipliers, velocities corrected at the ends of steps'
+         case default
+            line = 'transformation, beta of the impact step ' &
                   //to_text(impact_beta(simulation%scene, &
                   simulation%model%steps(1)%dt))//' ('//trim(merge('given    ', &
                   'automatic', settings%beta_choice == beta_given))//')'
-         end if
+         end select
       end associate
-      call say(log, line)
+      call say(log, '  impact: '//line)
    end subroutine report_impact
+
+   !> Each contact pair: who faces whom, and how they behave.
+   subroutine report_pairs(simulation, log)
+      type(simulation_type), intent(in) :: simulation
+      type(log_type), intent(in) :: log
+      character(len=:), allocatable :: line
+      integer :: p
+
+      associate (model => simulation%model)
+         do p = 1, size(model%pairs)
+            associate (pair => model%pairs(p), interaction => &
+                  model%interactions(model%pairs(p)%interaction))
+               line = 'contact pair '//trim(model%surfaces(pair%contactor)%name)//': '
+               line = line//plural(size(model%surfaces(pair%contactor)%nodes), 'slave node') &
+                     //' on '//partner_of(model, pair)//kind_of(pair)
+               if (interaction%friction > 0.0_wp) line = line//', friction ' &
+                     //to_text(interaction%friction)
+               call say(log, line)
+            end associate
+         end do
+      end associate
+   end subroutine report_pairs
+
+   !> The partner of a pair's slave, in words.
+   pure function partner_of(model, pair) result(text)
+      type(model_type), intent(in) :: model
+      type(contact_pair_type), intent(in) :: pair
+      character(len=:), allocatable :: text
+
+      if (pair%target == 0) then
+         text = 'circle '
+         if (model%rigid_surfaces(pair%rigid_target)%kind == rigid_plane) text = 'plane '
+         text = 'the rigid '//text//trim(model%rigid_surfaces(pair%rigid_target)%name)
+      else if (pair%target == pair%contactor) then
+         text = 'its own '//plural(size(model%surfaces(pair%target)%edges, 2), 'edge')
+      else
+         text = plural(size(model%surfaces(pair%target)%edges, 2), 'edge')//' of ' &
+               //trim(model%surfaces(pair%target)%name)
+      end if
+   end function partner_of
+
+   pure function kind_of(pair) result(text)
+      type(contact_pair_type), intent(in) :: pair
+      character(len=:), allocatable :: text
+
+      text = ''
+      if (pair%target > 0) text = ', node to surface'
+      if (pair%weighted) text = ', surface to surface'
+      if (pair%passes == 2) text = text//' both ways'
+      if (pair%small_sliding) text = text//', small sliding'
+      if (pair%redistributed) text = text//', contact nodes without mass'
+   end function kind_of
 
    !> Notes on the deck and its steps.
    subroutine report_notes(simulation, log)
@@ -178,14 +241,36 @@ contains
          if (n(event_limit) > 0) call say(log, &
                'warning: MAX EVENTS was reached; rows captured by it: ' &
                //to_text(n(event_limit)))
+         if (simulation%scene%rows%n > 0) call report_contact(simulation, log)
          call say(log, 'energy: kinetic '//to_text(ledger%kinetic)//', strain ' &
                //to_text(ledger%strain) &
-               //', damping '//to_text(ledger%damping)//', impacts '//to_text(ledger%impact_loss) &
+               //', damping '//to_text(ledger%damping)//', friction '//to_text(ledger%friction) &
+               //', impacts '//to_text(ledger%impact_loss) &
                //', external work '//to_text(ledger%external_work)//', balance error ' &
                //to_text(ledger%balance_error, 3))
          call say(log, 'cost: '//to_text(matrices%n_factorizations)//' factorizations, ' &
                //to_text(matrices%n_solves)//' solves, '//to_text(seconds, 3)//' s')
       end associate
    end subroutine report_summary
+
+   !> What contact has cost, and how often the fictitious force had to be found otherwise.
+   subroutine report_contact(simulation, log)
+      type(simulation_type), intent(in) :: simulation
+      type(log_type), intent(in) :: log
+      character(len=:), allocatable :: line
+
+      associate (scene => simulation%scene)
+         line = 'contact: at most '//plural(simulation%most_touching, 'row') &
+               //' touching at once'
+         if (size(scene%geometry%targets) > 0) line = line//'; search: ' &
+               //to_text(sum(scene%geometry%targets%n_tests)) &
+               //' tests of a node and an edge, bins built ' &
+               //to_text(sum(scene%geometry%targets%n_builds))//' times'
+         call say(log, line)
+         if (scene%n_cycles > 0) call say(log, &
+               'fictitious force: the iteration found no set of overlapping rows to stay with ' &
+               //to_text(scene%n_cycles)//' times; the complementarity problem was solved instead')
+      end associate
+   end subroutine report_contact
 
 end module run_report

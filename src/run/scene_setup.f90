@@ -16,11 +16,10 @@ module scene_setup
    use prescribed_motion, only: begin_motions, start_motions, prescribed_freedoms
    use equation_of_motion, only: system_type, impose
    use critical_step, only: critical_type, find_critical
-   use contact_pairs, only: contact_pair_list_type, find_contact_rows
-   use contact_geometry, only: new_contact_geometry
-   use constraint_rows, only: row_gaps, gap_size
-   use row_placement, only: new_rows, place_rows
-   use impact_scene, only: scene_type, contact_motion_type, new_contact_motion, merge_gap_tolerance
+   use contact_pairs, only: contact_pair_list_type
+   use impact_scene, only: scene_type, contact_motion_type, new_contact_motion
+   use initial_contact, only: adjustment_type, build_rows, adjust_pairs, adjustment_remark, &
+         check_overlaps
    use impact_method, only: impact_method_type
    use automatic_groups, only: partition_type, resolve_automatic
    use impact_factory, only: make_impact_method
@@ -43,6 +42,7 @@ module scene_setup
       type(source_line_type), allocatable :: remarks(:)
       type(ordering_type) :: ordering            !! of the equations, this step
       integer(int64) :: n_events(5) = 0          !! by event_ kinds, over the whole run
+      integer :: most_touching = 0               !! rows in contact at once
    end type simulation_type
 
 contains
@@ -56,14 +56,13 @@ contains
       self%remarks = self%model%notes
       call new_structure(self%scene%system%structure, self%model, error)
       if (allocated(error)) return
+      call build_rows(self%model, self%contact, self%scene, error)
+      if (allocated(error)) return
+      if (any(self%model%pairs%adjust)) call adjust_geometry(self, error)
+      if (allocated(error)) return
       call resolve_automatic(self%model, self%scene%system%structure, self%partition, error)
       if (allocated(error)) return
       self%deck_scheme = self%scene%system%structure%groups%scheme
-      call find_contact_rows(self%model, self%contact, error)
-      if (allocated(error)) return
-      call new_contact_geometry(self%scene%geometry, self%model, self%contact)
-      call new_rows(self%scene%rows, self%scene%geometry, self%contact, self%model, self%scene%system%structure, error)
-      if (allocated(error)) return
       call make_impact_method(self%model, self%contact, self%method, self%scene%settings, error)
       if (allocated(error)) return
       self%scene%impulse = [(0.0_wp, i=1, self%scene%rows%n)]
@@ -72,6 +71,27 @@ contains
       if (allocated(error)) return
       call initial_motion(self, error)
    end subroutine build_scene
+
+   !> ADJUST: nodes moved, the structure built anew where they are now.
+   subroutine adjust_geometry(self, error)
+      type(simulation_type), intent(inout) :: self
+      type(error_type), allocatable, intent(out) :: error
+      type(adjustment_type), allocatable :: adjustments(:)
+      integer :: i
+
+      call set_initial_motion(self)
+      call adjust_pairs(self%model, self%contact, self%scene, self%motion%motion, adjustments, &
+            error)
+      if (allocated(error)) return
+      do i = 1, size(adjustments)
+         call add_remark(self, adjustment_remark(self%model, self%contact, adjustments(i)))
+      end do
+      if (all(adjustments%n_moved == 0)) return
+      call new_structure(self%scene%system%structure, self%model, error)
+      if (allocated(error)) error%message = error%message//new_line('a') &
+            //'  (after ADJUST has moved nodes by up to ' &
+            //to_text(maxval(adjustments%largest_move))//': place the bodies closer by hand)'
+   end subroutine adjust_geometry
 
    !> Appends a remark for the log.
    subroutine add_remark(self, remark)
@@ -150,8 +170,13 @@ contains
    subroutine initial_motion(self, error)
       type(simulation_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error
-      real(wp), allocatable :: gaps(:)
-      integer :: i
+
+      call set_initial_motion(self)
+      call check_overlaps(self%model, self%contact, self%scene, self%motion%motion, error)
+   end subroutine initial_motion
+
+   subroutine set_initial_motion(self)
+      type(simulation_type), intent(inout) :: self
 
       associate (structure => self%scene%system%structure)
          call new_contact_motion(self%motion, structure%map%n_freedoms, self%scene%rows%n, &
@@ -159,18 +184,7 @@ contains
          call put_values(structure, self%model%initial_displacements, self%motion%motion%d)
          call put_values(structure, self%model%initial_velocities, self%motion%motion%v)
       end associate
-      if (self%scene%rows%n == 0) return
-      call place_rows(self%scene%rows, self%scene%geometry, self%scene%system%structure%map, &
-            self%motion%motion, self%motion%motion, huge(1.0_wp))
-      gaps = row_gaps(self%scene%rows, self%motion%motion)
-      i = minloc(gaps, dim=1)
-      if (gaps(i) >= -merge_gap_tolerance*gap_size(self%scene%rows, self%motion%motion, &
-            0.0_wp)) return
-      call fail_at(error, self%model%source, self%contact%rows(i)%place, 'node ' &
-            //to_text(self%scene%rows%node_id(i))//' overlaps its contact partner by ' &
-            //to_text(-gaps(i))//' at the start', &
-            'move the node or the wall, or give an initial displacement without overlap')
-   end subroutine initial_motion
+   end subroutine set_initial_motion
 
    subroutine put_values(structure, values, vector)
       type(structure_type), intent(in) :: structure
@@ -278,7 +292,7 @@ contains
       if (abs(dt - step%dt) <= 1.0e-6_wp*step%dt) dt = step%dt
    end function last_increment
 
-   !> Adds the events of the increment at hand to the count of the run.
+   !> Adds the events of the increment at hand to the count of the run; sees how many rows touch.
    pure subroutine count_events(self)
       type(simulation_type), intent(inout) :: self
       integer :: i
@@ -288,6 +302,8 @@ contains
             self%n_events(kind) = self%n_events(kind) + 1
          end associate
       end do
+      self%most_touching = max(self%most_touching, &
+            count(self%motion%touching .or. self%motion%lambda > 0.0_wp))
    end subroutine count_events
 
    subroutine begin_conditions(self, i_step, t)

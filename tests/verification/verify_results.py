@@ -155,7 +155,8 @@ def check_tables(checks, file, rows):
                 f'history: {rows} rows everywhere')
     expected = {'time', *(f'node_{n}/{q}1' for n in (1, 11, 12, 13) for q in ('U', 'V', 'A', 'RF')),
                 *(f'element_{n}/{q}' for n in (3, 4) for q in ('S11', 'E11', 'ENER')),
-                *(f'contact_BODY-WALL/{q}' for q in ('CF1', 'CF2', 'CF3', 'impulse', 'CDIS'))}
+                *(f'contact_BODY-WALL/{q}' for q in ('CF1', 'CF2', 'CF3', 'impulse', 'CNUM', 'CDIS',
+                                                  'CSLIP'))}
     checks.true(set(history) == expected, f'history: {len(expected)} columns '
                 f'{sorted(set(history) ^ expected)}')
     energy = columns(file['energy'])
