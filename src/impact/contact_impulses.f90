@@ -4,7 +4,7 @@ module contact_impulses
    use kinds, only: wp
    use errors, only: error_type, new_error, status_numerical
    use complementarity, only: solve_complementarity, solve_equality
-   use equation_of_motion, only: solve_mass, force_balance
+   use equation_of_motion, only: prepare_mass, solve_mass, force_balance
    use structure, only: inertia_force
    use energy_ledger, only: record_impact, record_friction
    use constraint_rows, only: row_gaps, row_rates, row_accelerations, row_curvature, slip_rates, &
@@ -15,7 +15,8 @@ module contact_impulses
    implicit none
    private
 
-   public :: restart_acceleration, hold_acceleration, project_touching, set_rates, follow_wall
+   public :: restart_acceleration, hold_acceleration, carry_acceleration
+   public :: project_touching, set_rates, follow_wall
    public :: book_impulse, book_friction, dependent_impulses
 
    !> Opening rates below this part of the speeds are round-off.
@@ -44,13 +45,9 @@ contains
       type(contact_motion_type), intent(inout) :: motion
       logical, intent(in) :: held(:)
       type(error_type), allocatable, intent(out) :: error
-      type(compliance_type) :: compliance
       real(wp) :: force(size(motion%motion%a))
-      real(wp), allocatable :: q(:), forces(:)
-      integer :: sense(scene%rows%n)
-      logical :: solved
 
-      call mass_compliance(scene, held, compliance, error)
+      call prepare_mass(scene%system, error)
       if (allocated(error)) return
       motion%motion%a = merge(motion%motion%a, 0.0_wp, scene%system%structure%map%prescribed)
       call find_spring_forces(scene, motion)
@@ -58,6 +55,38 @@ contains
             - inertia_force(scene%system%structure, motion%motion%a) &
             + contact_forces(scene%rows, motion%lambda, motion%tau, size(force))
       motion%motion%a = motion%motion%a + solve_mass(scene%system, force)
+      call add_holding_forces(scene, motion, held, error)
+   end subroutine hold_acceleration
+
+   !> The acceleration at hand, with other contact forces: those that hold the touching rows instead
+   !> of those it was found with. Unlike a restart it leaves out what damping makes of a jump in
+   !> velocity: with stiff dashpots and large steps that force would swing and grow.
+   subroutine carry_acceleration(scene, motion, error)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(inout) :: motion
+      type(error_type), allocatable, intent(out) :: error
+
+      call prepare_mass(scene%system, error)
+      if (allocated(error)) return
+      motion%motion%a = motion%motion%a - solve_mass(scene%system, motion%force)
+      motion%lambda = 0.0_wp
+      motion%tau = 0.0_wp
+      call add_holding_forces(scene, motion, motion%touching, error)
+   end subroutine carry_acceleration
+
+   !> Forces that hold rows bilaterally, with friction as they slide, added to the acceleration.
+   subroutine add_holding_forces(scene, motion, held, error)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(inout) :: motion
+      logical, intent(in) :: held(:)
+      type(error_type), allocatable, intent(out) :: error
+      type(compliance_type) :: compliance
+      real(wp), allocatable :: q(:), forces(:)
+      integer :: sense(scene%rows%n)
+      logical :: solved
+
+      call mass_compliance(scene, held, compliance, error)
+      if (allocated(error)) return
       if (compliance%n > 0) then
          q = join_rates(compliance, row_accelerations(scene%rows, motion%motion%a) &
                + row_curvature(scene%rows, motion%motion), &
@@ -76,7 +105,7 @@ contains
       motion%sticking = held .and. scene%rows%friction > 0.0_wp .and. .not. &
             abs(motion%tau) >= scene%rows%friction*motion%lambda*(1.0_wp - slip_tolerance)
       call note_contact_force(scene, motion)
-   end subroutine hold_acceleration
+   end subroutine add_holding_forces
 
    !> Forces of contact springs where they are, stiffness times overlap; their friction as it was,
    !> within its limit now. Nothing in other rows.

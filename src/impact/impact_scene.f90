@@ -40,6 +40,7 @@ module impact_scene
       real(wp), allocatable :: lambda(:)         !! (n_rows) contact forces, positive in compression
       real(wp), allocatable :: tau(:)            !! (n_rows) friction forces along the tangents
       real(wp), allocatable :: force(:)          !! (n_freedoms) contact forces in the acceleration
+      real(wp), allocatable :: carried(:)        !! (n_freedoms) other forces in it, from a jump
       logical, allocatable :: touching(:)        !! (n_rows) in sustained contact
       logical, allocatable :: sticking(:)        !! (n_rows) in contact without slip
       real(wp), allocatable :: slip(:)           !! (n_rows) path of slip so far
@@ -151,9 +152,11 @@ contains
       type(scene_type), intent(inout) :: scene
       type(contact_motion_type), intent(in) :: from
       type(contact_motion_type), intent(inout) :: to
-      real(wp) :: slip(scene%rows%n)
+      real(wp) :: slip(scene%rows%n), force(size(from%force))
 
-      call record_span(scene%ledger, scene%system, from%motion, to%motion, from%force, to%force)
+      force = from%force
+      if (allocated(from%carried)) force = force + from%carried
+      call record_span(scene%ledger, scene%system, from%motion, to%motion, force, to%force)
       scene%impulse = scene%impulse + (to%motion%t - from%motion%t)*(from%lambda &
             + scene%system%newmark%gamma*(to%lambda - from%lambda))
       call record_springs(scene%ledger, [spring_energy(scene, to%lambda), &

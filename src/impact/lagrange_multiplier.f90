@@ -16,7 +16,7 @@
 !>
 !> with Coulomb's cone on x. Rows that stay closed have the common velocity (for one row on lumped
 !> masses m1, m2: v+ = (m1 v1 + m2 v2)/(m1 + m2)), momentum is kept, kinetic energy never gained.
-!> The acceleration is found anew from equilibrium with G a = 0.
+!> The acceleration of Newmark's step is brought to G a+ = 0 in the same way, a+ = a1 + M^-1 Gt mu.
 !>
 !> Persistence: with g, G v and G a zero at the start, closed rows are held by the same
 !> complementarity on G a1, from which g1 = beta h^2 G a1 and G v1 = gamma h G a1 follow.
@@ -28,6 +28,8 @@ module lagrange_multiplier
    use kinds, only: wp
    use errors, only: error_type
    use complementarity, only: solve_complementarity
+   use mesh, only: scheme_implicit, scheme_explicit
+   use structure, only: damping_force
    use motion_state, only: state_type
    use equation_of_motion, only: predict_motion
    use energy_ledger, only: record_impact
@@ -39,7 +41,7 @@ module lagrange_multiplier
    use impact_method, only: impact_method_type
    use row_compliance, only: compliance_type, mass_compliance, join_rates, split_forces
    use rough_rows, only: solve_rows
-   use contact_impulses, only: restart_acceleration, project_touching, follow_wall, book_impulse, &
+   use contact_impulses, only: carry_acceleration, project_touching, follow_wall, book_impulse, &
          book_friction, dependent_impulses
    use row_following, only: rows_ahead, rows_here, settle_rows
    use first_contacts, only: find_first_contacts
@@ -93,6 +95,7 @@ contains
       closed = closed .or. (may_hit(scene%rows) .and. next%lambda > 0.0_wp .and. .not. &
             motion%touching)
       call accept_span(scene, motion, next)
+      if (allocated(next%carried)) deallocate (next%carried)
       if (.not. scene%system%newmark%beta > 0.0_wp) call book_rates(scene, motion, next)
       call let_go(scene, next, opening_rows(scene, motion, next))
       if (any(closed)) then
@@ -208,9 +211,11 @@ contains
       real(wp), intent(in) :: dt
       type(error_type), allocatable, intent(out) :: error
       real(wp), dimension(scene%rows%n) :: before, after, slip, whole, impulse, friction
+      real(wp) :: v_before(size(to%motion%v))
       logical :: was(scene%rows%n), held(scene%rows%n)
 
       was = to%touching
+      v_before = to%motion%v
       before = row_rates(scene%rows, to%motion)
       slip = slip_rates(scene%rows, to%motion)
       call find_impulses(scene, from, to, was .or. closed, dt, whole, impulse, friction, error)
@@ -224,9 +229,22 @@ contains
       call let_go(scene, to, was .and. .not. held)
       to%touching = held
       call note_impacts(scene, to, closed, row_rates(scene%rows, from%motion), whole)
-      call restart_acceleration(scene, to, error)
-      to%fresh = .true.
+      call carry_acceleration(scene, to, error)
+      if (allocated(error)) return
+      call note_jump(scene, to, to%motion%v - v_before)
    end subroutine close_rows
+
+   !> The acceleration after a jump of velocity lacks the damping of the jump: a force C jump in it.
+   subroutine note_jump(scene, motion, jump)
+      type(scene_type), intent(in) :: scene
+      type(contact_motion_type), intent(inout) :: motion
+      real(wp), intent(in) :: jump(:)            !! (n_freedoms)
+
+      motion%carried = 0.0_wp*jump
+      call damping_force(scene%system%structure, scheme_implicit, jump, motion%carried)
+      call damping_force(scene%system%structure, scheme_explicit, jump, motion%carried)
+      motion%fresh = .true.
+   end subroutine note_jump
 
    !> Impulses that correct the velocity, and what they make of those of the whole step.
    subroutine find_impulses(scene, from, to, marked, dt, whole, impulse, friction, error)
@@ -313,7 +331,7 @@ contains
       call let_go(scene, to, thrown)
       stuck = to%touching .and. to%sticking .and. .not. from%sticking
       if (.not. any(thrown .or. stuck)) return
-      call restart_acceleration(scene, to, error)
+      call carry_acceleration(scene, to, error)
       to%fresh = .true.
    end subroutine follow_rows
 
