@@ -98,8 +98,8 @@ contains
       integer, intent(in) :: place(:)
       type(sums_type), intent(inout) :: sums
       integer :: opposite, i, j, k
-      real(wp) :: s, ds, shape(3), rise(3), normal(2), gap, terms(2, 6, 3), x(2, 3), shape_target(3), &
-            growth(2), share(3)
+      real(wp) :: s, ds, shape(3), share(3), rise(3), normal(2), growth(2), gap
+      real(wp) :: terms(2, 6, 3), x(2, 3), shape_target(3)
 
       terms = 0.0_wp
       call find_opposite(edge, target, x_now, sum(ends)/2.0_wp, opposite)
