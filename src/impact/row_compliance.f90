@@ -69,11 +69,9 @@ contains
       compliance%w = 0.0_wp
       do j = 1, n
          call add_column(row_vector(scene%rows, rows(j), n_freedoms), j)
-         ! a row that has lost its partner within the step moves nothing
-         if (.not. scene%rows%facing(rows(j))) compliance%w(j, j) = 1.0_wp
       end do
       do j = 1, size(compliance%rough)
-         if (compliance%rough(j) .and. scene%rows%facing(rows(j))) then
+         if (compliance%rough(j)) then
             call add_column(slip_vector(scene%rows, rows(j), n_freedoms), n + j)
          else
             ! no force there: any motion will do
