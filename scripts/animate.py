@@ -205,6 +205,7 @@ class Picture:
         box = self.axes.get_position()
         place = self.figure.add_axes((0.86, box.y0, 0.02, box.height))
         bar = self.figure.colorbar(self.faces[0], cax=place, extend="both")
+        bar.formatter.set_powerlimits((-2, 3))
         words = "Mises stress" if self.field == "MISES" else axis_label(quantity(self.field))
         if words.endswith(quantity(self.field)):
             words = words[: -len(quantity(self.field))] + self.field

@@ -124,6 +124,17 @@ def grow(edges):
         left = [e for e in left if e not in set(near)]
 
 
+def near_side(surface, frame, along):
+    """The points that look the same way as those that touch: of a whole rim, the side in contact."""
+    everything = np.full(len(surface.points), True)
+    touching = surface.state(frame) > OPEN
+    normals = surface.normals()
+    if along == "s" or not touching.any():
+        return everything
+    chosen = normals @ normals[touching].mean(axis=0) > 0
+    return chosen if chosen.any() else everything
+
+
 def abscissa(surface, along):
     """Places along the surface, and in words what they are."""
     if along == "s":
@@ -198,22 +209,27 @@ def draw(mesh, found, frames, given):
     for frame in frames:
         for surface in found:
             x, words = abscissa(surface, along)
-            touching = surface.state(frame) > OPEN
+            near = near_side(surface, frame, along)
+            x, touching = x[near], (surface.state(frame) > OPEN)[near]
             look = COLOURS[curve % len(COLOURS)], MARKS[curve % len(MARKS)]
             curve += 1
-            pressure = surface.pressure(frame)
+            pressure = surface.pressure(frame)[near]
             scatter(panels[0], x, pressure, touching, *look, f"time {mesh.times[frame]:.4g}")
             print(f"time {mesh.times[frame]:.6g}: largest pressure {pressure.max():.6g} at "
                   f"{words} = {x[pressure.argmax()]:.6g}, {touching.sum()} nodes touch")
             if with_gap:
-                scatter(panels[1], x, surface.field("CDIS", frame), touching, *look, None)
+                scatter(panels[1], x, surface.field("CDIS", frame)[near], touching, *look, None)
             if with_slip:
-                scatter(panels[-1], x, surface.field("CSLIP", frame), touching, *look, None)
+                scatter(panels[-1], x, surface.field("CSLIP", frame)[near], touching, *look, None)
     exact_curves(panels[0], given, found, frames)
     panels[0].set_ylabel("contact pressure")
+    zoom(panels[0], found, frames, along, given)
     if with_gap:
         panels[1].set_ylabel("gap")
         panels[1].axhline(0.0, color="0.5", lw=0.8)
+        least = 1e-9 * max(np.ptp(mesh.points[:, :2], axis=0).max(), 1e-300)  # no picture of round-off
+        low, high = seen_range(panels[1])
+        panels[1].set_ylim(min(low, -least) - 0.08 * (high - low), max(high, least) * 1.08)
     if with_slip:
         panels[-1].set_ylabel("slip")
         least = 1e-9 * max(np.ptp(mesh.points[:, :2], axis=0).max(), 1e-300)  # no picture of round-off
@@ -222,9 +238,17 @@ def draw(mesh, found, frames, given):
     for axes in panels[1:]:
         axes.ticklabel_format(axis="y", scilimits=(-2, 3))
     panels[-1].set_xlabel(words)
-    zoom(panels[0], found, frames, along, given)
     panels[0].legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
     return figure
+
+
+def seen_range(axes):
+    """Least and largest ordinate of what lies within the abscissae shown."""
+    first, last = axes.get_xlim()
+    values = np.concatenate([line.get_ydata()[(line.get_xdata() >= first) & (line.get_xdata() <= last)]
+                             for line in axes.lines if len(line.get_xdata()) > 2] or [np.zeros(1)])
+    values = values[np.isfinite(values)]  # nodes that face nothing have no gap
+    return (values.min(), values.max()) if len(values) else (0.0, 0.0)
 
 
 def zoom(axes, found, frames, along, given):

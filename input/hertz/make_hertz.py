@@ -101,16 +101,16 @@ def texts():
     return {
         'disc.inc': single(1.0, 0.05),
         'matching.inc': pair(1.0, 1.0, 0.05, 8, 8),
-        'nonmatching.inc': pair(1.0, 3.0, 0.0375, 8, 7),
+        'nonmatching.inc': pair(1.0, 3.0, 0.0075, 8, 7),
         'disc_on_plane.inp': disc_on_plane(),
         'matching.inp': disc_on_disc('Two equal discs with matching meshes', 'matching.inc',
                                      2 * 4.85e-3, (1000, 1000), 'NODE TO SURFACE'),
-        'nonmatching.inp': disc_on_disc(unequal + 'weighted rows', 'nonmatching.inc', 3.98e-3,
+        'nonmatching.inp': disc_on_disc(unequal + 'weighted rows', 'nonmatching.inc', 2.1924e-4,
                                         (1000, 10000), 'SURFACE TO SURFACE'),
-        'nonmatching_nodes.inp': disc_on_disc(unequal + 'node rows', 'nonmatching.inc', 3.98e-3,
+        'nonmatching_nodes.inp': disc_on_disc(unequal + 'node rows', 'nonmatching.inc', 2.1924e-4,
                                               (1000, 10000), 'NODE TO SURFACE'),
         'nonmatching_swapped.inp': disc_on_disc(
-            unequal + 'node rows, the coarser side as slave', 'nonmatching.inc', 3.98e-3,
+            unequal + 'node rows, the coarser side as slave', 'nonmatching.inc', 2.1924e-4,
             (1000, 10000), 'NODE TO SURFACE', 'top, low'),
     }
 

@@ -8,15 +8,17 @@ from mesh_tools import node_set, rectangle, write  # noqa: E402
 GAP, HEIGHT = 0.5, 1.0
 
 
-def bar(length, along, across, nodes):
-    """A bar from x = 0 on; along and across count distances of nodes."""
+def bar(length, along, across, nodes, more=0.0):
+    """A bar from x = 0 on, higher by so much on both sides; along and across count distances of
+    nodes."""
+    low, high = -more, HEIGHT + more
     if nodes == 4:
-        return rectangle(0, 0, length, HEIGHT, along, across)
-    return rectangle(0, 0, length, HEIGHT, along // 2, across // 2).quadratic()
+        return rectangle(0, low, length, high, along, across)
+    return rectangle(0, low, length, high, along // 2, across // 2).quadratic()
 
 
 def mesh(left, right):
-    """Two bars (length, along, across, nodes), the gap between them about x = 0."""
+    """Two bars (length, along, across, nodes[, more height]), the gap between them before x = 0."""
     one, two = bar(*left).moved(-left[0] - GAP), bar(*right)
     node, element = len(one.x) + 1, len(one.elements) + 1
     far = [p for p, x in enumerate(two.x) if x[0] > right[0] * (1 - 1e-9)]

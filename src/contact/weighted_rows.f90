@@ -1,17 +1,19 @@
 !> Contact rows weighted over the edges of the slave surface: for each of its nodes j
 !>
-!>    g_j = int N_j (x_s - x_m) . n ds / int N_j ds,
+!>    g_j = int w_j (x_s - x_m) . n ds / int w_j ds,
 !>
-!> x_s on the slave surface, x_m the point of the target opposite to it, n the slave's normal there,
+!> w_j linear from node to node, middle nodes included: the shape functions of a quadratic edge are
+!> negative in parts, and bodies that just touch would overlap by their averages. x_s on the slave
+!> surface, x_m the point of the target opposite to it, n the slave's normal there,
 !> outward of the target. The integrals go over the parts of the slave surface that the target is
 !> opposite to, divided at the nodes of both, with five Gauss points a piece. A uniform pressure on
 !> nonmatching meshes so gives the consistent forces on both.
 !>
-!> A node has a row if the covered part has at least 5 % of the whole int N_j and g_j is not more
+!> A node has a row if the covered part has at least 5 % of the whole int w_j and g_j is not more
 !> than the reach.
 module weighted_rows
    use kinds, only: wp
-   use segment_projection, only: closest_on_edge, cut_edge, edge_frame, edge_functions
+   use segment_projection, only: closest_on_edge, cut_edge, edge_functions
    use target_surface, only: edge_coordinates, target_type
    use edge_overlap, only: find_breaks, find_opposite, set_slave_edge, slave_edge_type
    implicit none
@@ -20,8 +22,6 @@ module weighted_rows
    public :: weighted_rows_type, find_weighted_rows
 
    real(wp), parameter :: least_cover = 0.05_wp
-   !> Where normals differ by more than 60 degrees the force is not made larger.
-   real(wp), parameter :: least_facing = 0.5_wp
    integer, parameter :: n_points = 5
    real(wp), parameter :: inner = sqrt(5.0_wp - 2.0_wp*sqrt(10.0_wp/7.0_wp))/3.0_wp
    real(wp), parameter :: outer = sqrt(5.0_wp + 2.0_wp*sqrt(10.0_wp/7.0_wp))/3.0_wp
@@ -37,7 +37,7 @@ module weighted_rows
       integer :: n = 0
       integer, allocatable :: slave_node(:)      !! (n) ascending
       real(wp), allocatable :: gap(:)            !! (n) g_j
-      real(wp), allocatable :: weight(:)         !! (n) int N_j covered: force by pressure
+      real(wp), allocatable :: weight(:)         !! (n) int w_j covered: force by pressure
       real(wp), allocatable :: normal(:, :)      !! (2, n) mean normal, outward of the target
       integer, allocatable :: first(:)           !! (n + 1)
       integer, allocatable :: node(:)            !! of each term, once in a row
@@ -78,7 +78,12 @@ contains
          call set_slave_edge(edge, slave, e, x_now, reach, target)
          call find_breaks(edge, target, x_now, breaks, n)
          do i = 1, n - 1
-            call add_piece(edge, target, x_now, breaks(i:i + 1), place, sums)
+            if (edge%n == 3 .and. breaks(i) < 0.0_wp .and. breaks(i + 1) > 0.0_wp) then
+               call add_piece(edge, target, x_now, [breaks(i), 0.0_wp], place, sums)
+               call add_piece(edge, target, x_now, [0.0_wp, breaks(i + 1)], place, sums)
+            else
+               call add_piece(edge, target, x_now, breaks(i:i + 1), place, sums)
+            end if
          end do
       end do
       call gather_rows(slave, sums, reach, rows)
@@ -93,7 +98,7 @@ contains
       integer, intent(in) :: place(:)
       type(sums_type), intent(inout) :: sums
       integer :: opposite, i, j, k
-      real(wp) :: s, ds, shape(3), rise(3), normal(2), gap, rate(2)
+      real(wp) :: s, ds, shape(3), share(3), rise(3), normal(2), growth(2), gap
       real(wp) :: terms(2, 6, 3), x(2, 3), shape_target(3)
 
       terms = 0.0_wp
@@ -102,22 +107,24 @@ contains
       do i = 1, n_points
          s = (ends(1) + ends(2) + gauss_point(i)*(ends(2) - ends(1)))/2.0_wp
          call edge_functions(edge%n, s, shape, rise)
+         share = shape
+         if (edge%n == 3) share = [max(0.0_wp, -s), max(0.0_wp, s), 1.0_wp - abs(s)]
          ds = gauss_weight(i)*(ends(2) - ends(1))/2.0_wp*norm2(matmul(edge%x, rise))
          do j = 1, edge%n
             k = place(edge%nodes(j))
-            sums%whole(k) = sums%whole(k) + ds*shape(j)
+            sums%whole(k) = sums%whole(k) + ds*share(j)
          end do
          if (opposite == 0) cycle
          call look_across(edge, x(:, :target%n_edge_nodes(opposite)), shape, normal, gap, &
-               shape_target, rate)
+               shape_target, growth)
          do j = 1, edge%n
             k = place(edge%nodes(j))
-            sums%weight(k) = sums%weight(k) + ds*shape(j)
-            sums%gap(k) = sums%gap(k) + ds*shape(j)*gap
-            sums%normal(:, k) = sums%normal(:, k) + ds*shape(j)*normal
+            sums%weight(k) = sums%weight(k) + ds*share(j)
+            sums%gap(k) = sums%gap(k) + ds*share(j)*gap
+            sums%normal(:, k) = sums%normal(:, k) + ds*share(j)*normal
             do k = 1, 3
-               terms(:, k, j) = terms(:, k, j) + ds*shape(j)*shape(k)*rate
-               terms(:, k + 3, j) = terms(:, k + 3, j) - ds*shape(j)*shape_target(k)*rate
+               terms(:, k, j) = terms(:, k, j) + ds*share(j)*shape(k)*growth
+               terms(:, k + 3, j) = terms(:, k + 3, j) - ds*share(j)*shape_target(k)*growth
             end do
          end do
       end do
@@ -129,18 +136,17 @@ contains
       end do
    end subroutine add_piece
 
-   !> The point of a target edge along the normal n from a point of a slave edge. It slides along the
-   !> edge, whose own normal is m: with their relative velocity v the gap changes at the rate
-   !> m . v / (n . m).
-   pure subroutine look_across(edge, x, shape, normal, gap, shape_target, rate)
+   !> The point of a target edge along the normal from a point of a slave edge. Where the target's
+   !> normal m differs from the slave's normal n, the point opposite to it wanders along the target
+   !> when both slide, and the gap grows by m . (v_s - v_m)/(m . n).
+   pure subroutine look_across(edge, x, shape, normal, gap, shape_target, growth)
       type(slave_edge_type), intent(in) :: edge
       real(wp), intent(in) :: x(:, :)            !! (2, 2 or 3) target edge
       real(wp), intent(in) :: shape(3)           !! of the slave edge at the point
       real(wp), intent(out) :: normal(2), gap, shape_target(3)
-      real(wp), intent(out) :: rate(2)           !! m / (n . m)
+      real(wp), intent(out) :: growth(2)         !! m/(m . n)
       logical :: found
-      real(wp) :: rise(3), point(2), s, fraction, reach(2)
-      real(wp) :: opposite(2), tangent(2), outward(2), stretch, bend
+      real(wp) :: rise(3), point(2), s, fraction, reach(2), along(2), slant
 
       point = matmul(edge%x, shape)
       normal = matmul(edge%normal, shape)
@@ -151,8 +157,14 @@ contains
       if (.not. found) call closest_on_edge(x, point, s, fraction)
       call edge_functions(size(x, 2), s, shape_target, rise)
       gap = dot_product(normal, point - matmul(x, shape_target(:size(x, 2))))
-      call edge_frame(x, s, opposite, tangent, outward, stretch, bend)
-      rate = outward/max(dot_product(outward, normal), least_facing)
+      along = matmul(x, rise(:size(x, 2)))
+      slant = along(2)*normal(1) - along(1)*normal(2)
+      growth = [along(2), -along(1)]
+      if (abs(slant) > 0.5_wp*norm2(along)) then
+         growth = growth/slant
+      else
+         growth = normal
+      end if
    end subroutine look_across
 
    pure subroutine add_terms(sums, owner, nodes, coefficient)

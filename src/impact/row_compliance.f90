@@ -81,12 +81,6 @@ contains
          end if
       end do
       compliance%w = (compliance%w + transpose(compliance%w))/2.0_wp
-      ! a row that has lost its partner in the step has no force
-      do j = 1, n
-         if (.not. scene%rows%facing(rows(j))) compliance%w(j, j) = 1.0_wp
-         if (.not. scene%rows%facing(rows(j)) .and. size(compliance%rough) > 0) &
-               compliance%w(n + j, n + j) = 1.0_wp
-      end do
 
    contains
 

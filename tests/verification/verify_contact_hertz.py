@@ -31,7 +31,7 @@ class Hertz:
         self.width, self.peak = hertz_line(force, radius, modulus)
         self.exact = hertz_pressure(self.x, force, radius, modulus)
         self.recovered = pressure_of_forces(points[nodes], edges, forces)
-        self.written = contact.frames('CPRESS')[-1, nodes].reshape(-1) if 'CPRESS' in contact.run.file['VTKHDF/PointData'] else self.recovered*np.nan
+        self.written = contact.frames('CPRESS')[-1, nodes].reshape(-1)
         self.touching = forces > 1e-12 * forces.max()
         self.spacing = self.x[1] - self.x[0]
 
