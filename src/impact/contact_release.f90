@@ -7,7 +7,7 @@ module contact_release
          acceleration_size
    use impact_scene, only: scene_type, contact_motion_type, event_type, record_event, &
          event_release, gap_tolerance, rate_tolerance, acceleration_tolerance, &
-         merge_gap_tolerance, merge_time_tolerance
+         merge_time_tolerance
    use constrained_step, only: advance_smoothly
    use contact_impulses, only: restart_acceleration
    use impact_time, only: span_type
@@ -54,7 +54,7 @@ contains
       span%gap_limit = gap_tolerance*gap_size(scene%rows, motion%motion, progress%dt)
       ! rows of bodies that slide on each other are put on their edges anyway
       span%found_limit = span%gap_limit
-      if (scene%rows%moving) span%found_limit = span%gap_limit*(merge_gap_tolerance/gap_tolerance)
+      if (scene%rows%moving) span%found_limit = 10.0_wp*span%gap_limit
       span%rate_limit = rate_tolerance*rate_size(scene%rows, motion%motion)
       release = .false.
       if (any(progress%stubborn)) then
