@@ -33,6 +33,8 @@ module transformation
 
    !> Rows are placed so often at an impact until it stays where it is.
    integer, parameter :: max_refinements = 60
+   !> A gap that jumps from open to an overlap of no more than this part of the size is a hit there.
+   real(wp), parameter :: small_jump = 1.0e-4_wp
 
    !> beta of the impact step by the thesis.
    real(wp), parameter :: thesis_beta = 1.0_wp/6.0_wp
@@ -213,11 +215,12 @@ contains
       logical, intent(out) :: lost
       type(error_type), allocatable, intent(out) :: error
       logical :: suspect(scene%rows%n)
-      real(wp) :: low, high, gap
+      real(wp) :: low, high, gap, overlap
       integer :: i
 
       low = 0.0_wp
       high = span%dt
+      overlap = huge(overlap)
       suspect = .false.
       do i = 1, max_refinements
          suspect(hits%row(:hits%n)) = .true.
@@ -225,14 +228,20 @@ contains
          gap = minval(row_gaps(scene%rows, at%motion), mask=suspect)
          if (abs(gap) <= span%gap_limit .and. (tau > 0.0_wp .or. i > 1)) exit
          if (gap < 0.0_wp) high = tau
+         if (gap < 0.0_wp) overlap = -gap
          if (gap > 0.0_wp) low = tau
          if (high - low <= time_tolerance*span%dt) exit
          call look_again(scene, motion, span, [low, high], hits, tau, at, error)
          if (allocated(error)) return
       end do
       lost = gap > span%gap_limit*(merge_gap_tolerance/gap_tolerance)
+      if (lost .and. overlap <= small_jump*scene%geometry%size) then
+         lost = .false.
+         tau = high
+      end if
       if (.not. tau > 0.0_wp) return
       call advance_smoothly(scene, motion, tau, span%beta, at, error, span%held)
+      if (.not. allocated(error) .and. tau >= high) call rows_at(scene, motion, at, span%dt)
    end subroutine refine_impact
 
    !> The earliest impact by the rows as they have been placed now, in a bracket.
