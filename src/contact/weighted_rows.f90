@@ -129,8 +129,8 @@ contains
       end do
    end subroutine add_piece
 
-   !> The point of a target edge along the normal n from a point of a slave edge. It slides along the
-   !> edge, whose own normal is m: with their relative velocity v the gap changes at the rate
+   !> The point of a target edge along the normal n from a point of a slave edge. It slides along
+   !> the edge, whose own normal is m: with their relative velocity v the gap changes at the rate
    !> m . v / (n . m).
    pure subroutine look_across(edge, x, shape, normal, gap, shape_target, rate)
       type(slave_edge_type), intent(in) :: edge

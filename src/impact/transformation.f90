@@ -202,8 +202,8 @@ contains
       end do
    end subroutine find_impact
 
-   !> Places sliding rows where the impact was found and looks for it again, until it stays: Newton's
-   !> method on the true gap, with bisection where the rows at hand lead out of the bracket. Lost is
+   !> Places sliding rows where the impact was found and looks for it again, until it stays:
+   !> Newton's method on the true gap, with bisection where the rows at hand lead out of the bracket. Lost is
    !> an impact that is none: the span then ends without one.
    subroutine refine_impact(scene, motion, span, hits, tau, at, lost, error)
       type(scene_type), intent(inout) :: scene
