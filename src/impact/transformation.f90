@@ -171,8 +171,9 @@ contains
       if (scene%rows%moving) call refine_impact(scene, motion, span, all_hits, tau, at, lost, error)
       if (allocated(error)) return
       ! a gap that jumps, as from partner to partner, is never zero: not to be looked for again
-      if (lost .and. tau < (1.0_wp - merge_time_tolerance)*span%dt) &
-            progress%ignored(all_hits%row(:all_hits%n)) = .true.
+      if (lost .and. tau < (1.0_wp - merge_time_tolerance)*span%dt) then
+         progress%ignored(all_hits%row(:all_hits%n)) = .true.
+      end if
       if (tau > 0.0_wp) call take_span(scene, motion, at, tau, span, progress, error)
       if (allocated(error) .or. lost) return
       progress%n_events = progress%n_events + 1
@@ -203,8 +204,8 @@ contains
    end subroutine find_impact
 
    !> Places sliding rows where the impact was found and looks for it again, until it stays:
-   !> Newton's method on the true gap, with bisection where the rows at hand lead out of the bracket. Lost is
-   !> an impact that is none: the span then ends without one.
+   !> Newton's method on the true gap, with bisection where the rows at hand lead out of the bracket.
+   !> Lost is an impact that is none: the span then ends without one.
    subroutine refine_impact(scene, motion, span, hits, tau, at, lost, error)
       type(scene_type), intent(inout) :: scene
       type(contact_motion_type), intent(in) :: motion
