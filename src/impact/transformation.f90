@@ -204,7 +204,7 @@ contains
    end subroutine find_impact
 
    !> Places sliding rows where the impact was found and looks for it again, until it stays:
-   !> Newton's method on the true gap, with bisection where the rows at hand lead out of the bracket.
+   !> Newton's method on the true gap, bisection where the rows at hand lead out of the bracket.
    !> Lost is an impact that is none: the span then ends without one.
    subroutine refine_impact(scene, motion, span, hits, tau, at, lost, error)
       type(scene_type), intent(inout) :: scene
