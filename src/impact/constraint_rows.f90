@@ -142,8 +142,8 @@ contains
             - wall_positions(self, self%sliding_motion, from%t)
    end function slip_increments
 
-   !> Work that moving walls do on what touches them between two states, by mean contact and friction
-   !> forces.
+   !> Work that moving walls do on what touches them between two states, by mean contact and
+   !> friction forces.
    pure function wall_work(self, from, to, lambda, tau) result(work)
       type(rows_type), intent(in) :: self
       type(state_type), intent(in) :: from, to

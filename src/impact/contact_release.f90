@@ -1,5 +1,5 @@
-!> The smooth motion between events: over all that remains of a step, or up to where the first of the
-!> touching rows lets go.
+!> The smooth motion between events: over all that remains of a step, or up to where the first of
+!> the touching rows lets go.
 module contact_release
    use kinds, only: wp
    use errors, only: error_type

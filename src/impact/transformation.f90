@@ -33,6 +33,8 @@ module transformation
 
    !> Rows are placed so often at an impact until it stays where it is.
    integer, parameter :: max_refinements = 60
+   !> A gap that jumps from open to an overlap of no more than this part of the size is a hit there.
+   real(wp), parameter :: small_jump = 1.0e-4_wp
 
    !> beta of the impact step by the thesis.
    real(wp), parameter :: thesis_beta = 1.0_wp/6.0_wp
@@ -169,8 +171,9 @@ contains
       if (scene%rows%moving) call refine_impact(scene, motion, span, all_hits, tau, at, lost, error)
       if (allocated(error)) return
       ! a gap that jumps, as from partner to partner, is never zero: not to be looked for again
-      if (lost .and. tau < (1.0_wp - merge_time_tolerance)*span%dt) &
-            progress%ignored(all_hits%row(:all_hits%n)) = .true.
+      if (lost .and. tau < (1.0_wp - merge_time_tolerance)*span%dt) then
+         progress%ignored(all_hits%row(:all_hits%n)) = .true.
+      end if
       if (tau > 0.0_wp) call take_span(scene, motion, at, tau, span, progress, error)
       if (allocated(error) .or. lost) return
       progress%n_events = progress%n_events + 1
@@ -200,9 +203,9 @@ contains
       end do
    end subroutine find_impact
 
-   !> Places sliding rows where the impact was found and looks for it again, until it stays: Newton's
-   !> method on the true gap, with bisection where the rows at hand lead out of the bracket. Lost is
-   !> an impact that is none: the span then ends without one.
+   !> Places sliding rows where the impact was found and looks for it again, until it stays:
+   !> Newton's method on the true gap, bisection where the rows at hand lead out of the bracket.
+   !> Lost is an impact that is none: the span then ends without one.
    subroutine refine_impact(scene, motion, span, hits, tau, at, lost, error)
       type(scene_type), intent(inout) :: scene
       type(contact_motion_type), intent(in) :: motion
@@ -213,11 +216,12 @@ contains
       logical, intent(out) :: lost
       type(error_type), allocatable, intent(out) :: error
       logical :: suspect(scene%rows%n)
-      real(wp) :: low, high, gap
+      real(wp) :: low, high, gap, overlap
       integer :: i
 
       low = 0.0_wp
       high = span%dt
+      overlap = huge(overlap)
       suspect = .false.
       do i = 1, max_refinements
          suspect(hits%row(:hits%n)) = .true.
@@ -225,14 +229,20 @@ contains
          gap = minval(row_gaps(scene%rows, at%motion), mask=suspect)
          if (abs(gap) <= span%found_limit .and. (tau > 0.0_wp .or. i > 1)) exit
          if (gap < 0.0_wp) high = tau
+         if (gap < 0.0_wp) overlap = -gap
          if (gap > 0.0_wp) low = tau
          if (high - low <= time_tolerance*span%dt) exit
          call look_again(scene, motion, span, [low, high], hits, tau, at, error)
          if (allocated(error)) return
       end do
       lost = gap > span%gap_limit*(merge_gap_tolerance/gap_tolerance)
+      if (lost .and. overlap <= small_jump*scene%geometry%size) then
+         lost = .false.
+         tau = high
+      end if
       if (.not. tau > 0.0_wp) return
       call advance_smoothly(scene, motion, tau, span%beta, at, error, span%held)
+      if (.not. allocated(error) .and. tau >= high) call rows_at(scene, motion, at, span%dt)
    end subroutine refine_impact
 
    !> The earliest impact by the rows as they have been placed now, in a bracket.

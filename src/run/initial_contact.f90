@@ -33,8 +33,8 @@ module initial_contact
    integer, parameter :: max_rounds = 10
    integer, parameter :: max_sweeps = 500
    !> The mean gap over the sides around a node is negative where round bodies just touch: the
-   !> functions of a curved side's ends are so on a part of it. That is no more than this part of the
-   !> length which the node stands for.
+   !> functions of a curved side's ends are so on a part of it. That is no more than this part of
+   !> the length which the node stands for.
    real(wp), parameter :: weighted_share = 0.05_wp
    !> The error of overlapping nodes names so many.
    integer, parameter :: most_named = 5
