@@ -178,7 +178,7 @@ contains
       type(row_terms_type), intent(inout) :: terms
       real(wp), allocatable :: normals(:, :)
       type(weighted_rows_type) :: weighted
-      integer :: i, next
+      integer :: nodes(pass%last - pass%first + 1), i, next
 
       if (pass%target > 0) call update_target(self%targets(pass%target), positions%before, &
             positions%now, positions%reach)
@@ -186,8 +186,8 @@ contains
          call find_weighted_rows(pass%contactor, self%targets(pass%target), positions%now, &
                positions%reach, weighted)
       else if (pass%target > 0) then
-         call find_normals(pass%edges, self%rows(pass%first:pass%last)%node, positions%now, &
-               normals)
+         nodes = self%rows(pass%first:pass%last)%node
+         call find_normals(pass%edges, nodes, positions%now, normals)
       end if
       next = 1
       do i = pass%first, pass%last
