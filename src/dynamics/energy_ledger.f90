@@ -14,6 +14,7 @@ module energy_ledger
    private
 
    public :: ledger_type, open_ledger, record_span, record_impact, close_increment
+   public :: take_back_damping
    public :: record_friction, record_springs
    public :: group_energies
 
@@ -83,6 +84,15 @@ contains
             reaction_forces(system, from, contact_from) + reaction_forces(system, to, &
             contact_to))/2.0_wp
    end subroutine record_reactions
+
+   !> Work of damping forces that the acceleration at the start of a span has left out.
+   pure subroutine take_back_damping(self, from, to, left_out)
+      type(ledger_type), intent(inout) :: self
+      type(state_type), intent(in) :: from, to
+      real(wp), intent(in) :: left_out(:)        !! (n_freedoms)
+
+      self%damping = self%damping - dot_product(to%d - from%d, left_out)/2.0_wp
+   end subroutine take_back_damping
 
    !> An impact: what it takes from the bodies and what a moving wall gives.
    pure subroutine record_impact(self, loss, wall_work)

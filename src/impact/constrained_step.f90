@@ -44,6 +44,8 @@ contains
       newmark = scene%system%newmark
       newmark%beta = beta
       to = from
+      to%jump = 0.0_wp
+      to%left_out = 0.0_wp
       call predict_motion(scene%system, from%motion, dt, beta, to%motion)
       fixed = fixed_force(scene%system, from%motion, to%motion)
       call describe_step(scene, dt, beta, step, held)

@@ -4,8 +4,11 @@ module contact_impulses
    use kinds, only: wp
    use errors, only: error_type, new_error, status_numerical
    use complementarity, only: solve_complementarity, solve_equality
-   use equation_of_motion, only: prepare_mass, solve_mass, force_balance
-   use structure, only: inertia_force, strain_energy
+   use mesh, only: scheme_implicit, scheme_explicit
+   use motion_state, only: state_type
+   use equation_of_motion, only: prepare_mass, solve_mass, force_balance, prepare_motion, &
+         solve_motion
+   use structure, only: inertia_force, damping_force, strain_energy
    use external_load, only: load_at
    use energy_ledger, only: record_impact, record_friction
    use constraint_rows, only: row_gaps, row_rates, row_accelerations, row_curvature, slip_rates, &
@@ -40,24 +43,56 @@ contains
       call hold_acceleration(scene, motion, motion%touching, error)
    end subroutine restart_acceleration
 
-   !> The same with any rows held. Contact springs push as they are.
+   !> The same with any rows held. Contact springs push as they are. What dampers make of a jump in
+   !> velocity is found on the effective matrix of a step, M + gamma h C + beta h^2 K: it tends to
+   !> that on the mass with h, but a force that dies away within the step does not swing on.
    subroutine hold_acceleration(scene, motion, held, error)
       type(scene_type), intent(inout) :: scene
       type(contact_motion_type), intent(inout) :: motion
       logical, intent(in) :: held(:)
       type(error_type), allocatable, intent(out) :: error
       real(wp) :: force(size(motion%motion%a))
+      type(state_type) :: calm
 
       call prepare_mass(scene%system, error)
       if (allocated(error)) return
+      calm = motion%motion
+      calm%v = calm%v - motion%jump
       motion%motion%a = merge(motion%motion%a, 0.0_wp, scene%system%structure%map%prescribed)
       call find_spring_forces(scene, motion)
-      force = force_balance(scene%system, motion%motion) &
+      force = force_balance(scene%system, calm) &
             - inertia_force(scene%system%structure, motion%motion%a) &
             + contact_forces(scene%rows, motion%lambda, motion%tau, size(force))
       motion%motion%a = motion%motion%a + solve_mass(scene%system, force)
+      call damp_jump(scene, motion, error)
+      if (allocated(error)) return
       call add_holding_forces(scene, motion, held, error)
    end subroutine hold_acceleration
+
+   !> Adds the acceleration by the damping forces of a jump in velocity.
+   subroutine damp_jump(scene, motion, error)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(inout) :: motion
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), dimension(size(motion%jump)) :: force, a
+
+      motion%left_out = 0.0_wp
+      if (.not. any(abs(motion%jump) > 0.0_wp)) return
+      force = 0.0_wp
+      call damping_force(scene%system%structure, scheme_implicit, motion%jump, force)
+      call damping_force(scene%system%structure, scheme_explicit, motion%jump, force)
+      if (.not. any(abs(force) > 0.0_wp)) return
+      if (scene%dt > 0.0_wp) then
+         call prepare_motion(scene%system, scene%dt, scene%system%newmark%beta, motion%motion%d, &
+               motion%motion%history, error)
+         if (allocated(error)) return
+         a = -solve_motion(scene%system, force)
+      else
+         a = -solve_mass(scene%system, force)
+      end if
+      motion%motion%a = motion%motion%a + a
+      motion%left_out = force + inertia_force(scene%system%structure, a)
+   end subroutine damp_jump
 
    !> The acceleration at hand, with other contact forces: those that hold the touching rows instead
    !> of those it was found with. Unlike a restart it leaves out what damping makes of a jump in

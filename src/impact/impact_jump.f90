@@ -72,7 +72,7 @@ contains
       logical, intent(out) :: held(:)            !! (n_rows) rows that touch afterwards
       type(error_type), allocatable, intent(out) :: error
       real(wp), dimension(scene%rows%n) :: e, before, slip, after, limits
-      real(wp) :: v_before(size(motion%motion%v))
+      real(wp), dimension(size(motion%motion%v)) :: v_before, jump_before
       real(wp), dimension(size(compliance%w, 1)) :: q, p
       logical, dimension(scene%rows%n) :: slow, open, pressed
       logical :: solved
@@ -83,6 +83,7 @@ contains
       before = row_rates(scene%rows, motion%motion)
       slip = slip_rates(scene%rows, motion%motion)
       v_before = motion%motion%v
+      jump_before = motion%jump
       e = merge(scene%rows%restitution, 0.0_wp, impact%new .and. .not. impact%plastic)
       do
          q = join_rates(compliance, before + e*min(0.0_wp, before), slip)
@@ -94,6 +95,7 @@ contains
          end if
          call split_forces(compliance, p, impulse, friction)
          motion%motion%v = v_before + matmul(compliance%x, p)
+         motion%jump = jump_before + (motion%motion%v - v_before)
          after = row_rates(scene%rows, motion%motion)
          held = motion%touching .or. (impact%new .and. .not. e > 0.0_wp) .or. &
                (impact%near .and. impulse > 0.0_wp)

@@ -5,8 +5,8 @@ module impact_scene
    use surfaces, only: beta_automatic, method_transformation
    use motion_state, only: state_type
    use equation_of_motion, only: system_type
-   use energy_ledger, only: ledger_type, record_span, record_impact, record_friction, &
-         record_springs
+   use energy_ledger, only: ledger_type, record_span, take_back_damping, record_impact, &
+         record_friction, record_springs
    use contact_geometry, only: contact_geometry_type
    use constraint_rows, only: rows_type, row_accelerations, contact_forces, slip_increments, &
          wall_work, law_penalty
@@ -48,6 +48,8 @@ module impact_scene
       real(wp), allocatable :: entry_speed(:)    !! (n_rows) fictitious force: approach speed
       logical, allocatable :: leaving(:)         !! (n_rows) fictitious force: on its way out
       logical :: fresh = .false.                 !! acceleration just restarted, no time since
+      real(wp), allocatable :: jump(:)           !! (n_freedoms) of the velocity, no time since
+      real(wp), allocatable :: left_out(:)       !! (n_freedoms) damping forces not in `a`
    end type contact_motion_type
 
    !> One thing that happened in one row.
@@ -83,6 +85,7 @@ module impact_scene
       type(ledger_type) :: ledger
       type(event_type), allocatable :: events(:) !! grown by doubling
       integer :: n_events = 0                    !! since the last time they were fetched
+      real(wp) :: dt = 0.0_wp                    !! of the increment at hand
       real(wp), allocatable :: impulse(:)        !! (n_rows) of the increment at hand
       real(wp), allocatable :: curvature(:)      !! (n_rows) part of the gap acceleration at its end
       integer :: n_residuals = 0                 !! Newton iterations of the last solution
@@ -108,6 +111,8 @@ contains
       self%tau = self%lambda
       self%slip = self%lambda
       self%force = self%motion%d
+      self%jump = self%motion%d
+      self%left_out = self%motion%d
       self%touching = [(.false., i=1, n_rows)]
       self%leaving = self%touching
       self%sticking = self%touching
@@ -158,6 +163,7 @@ contains
       force = from%force
       if (allocated(from%carried)) force = force + from%carried
       call record_span(scene%ledger, scene%system, from%motion, to%motion, force, to%force)
+      call take_back_damping(scene%ledger, from%motion, to%motion, from%left_out)
       scene%impulse = scene%impulse + (to%motion%t - from%motion%t)*(from%lambda &
             + scene%system%newmark%gamma*(to%lambda - from%lambda))
       if (any(scene%rows%amplitude > 0)) then

@@ -87,6 +87,7 @@ contains
       type(contact_motion_type) :: next
 
       simulation%scene%impulse = 0.0_wp
+      simulation%scene%dt = dt
       if (.not. simulation%scene%system%static) then
          call simulation%method%advance(simulation%scene, simulation%motion, dt, error)
          return
