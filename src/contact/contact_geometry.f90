@@ -9,6 +9,7 @@ module contact_geometry
    use amplitude_value, only: amplitude_at
    use contact_pairs, only: contact_row_type, contact_pair_list_type, row_fixed, row_circle, &
          row_surface
+   use contactor_normals, only: find_normals
    use row_terms, only: row_terms_type, start_terms, start_row_terms, add_term
    use target_surface, only: target_type, new_target, update_target
    use contact_search, only: partner_type, find_partner
@@ -177,7 +178,7 @@ contains
       type(row_terms_type), intent(inout) :: terms
       real(wp), allocatable :: normals(:, :)
       type(weighted_rows_type) :: weighted
-      integer :: i, next
+      integer :: nodes(pass%last - pass%first + 1), i, next
 
       if (pass%target > 0) call update_target(self%targets(pass%target), positions%before, &
             positions%now, positions%reach)
@@ -185,7 +186,8 @@ contains
          call find_weighted_rows(pass%contactor, self%targets(pass%target), positions%now, &
                positions%reach, weighted)
       else if (pass%target > 0) then
-         call find_normals(pass, positions%now, self%rows, normals)
+         nodes = self%rows(pass%first:pass%last)%node
+         call find_normals(pass%edges, nodes, positions%now, normals)
       end if
       next = 1
       do i = pass%first, pass%last
@@ -203,49 +205,6 @@ contains
          if (allocated(self%allowance)) terms%gap(i) = terms%gap(i) - self%allowance(i)
       end do
    end subroutine place_pass
-
-   !> Outward normals of the contactor's nodes, from its edges; zero where it has none.
-   subroutine find_normals(pass, x, rows, normals)
-      type(pass_type), intent(in) :: pass
-      real(wp), intent(in) :: x(:, :)            !! (3, n_nodes)
-      type(contact_row_type), intent(in) :: rows(:)
-      real(wp), allocatable, intent(out) :: normals(:, :)   !! (2, n_rows of the pass)
-      real(wp) :: along(2)
-      integer :: e, i, k
-
-      allocate (normals(2, pass%last - pass%first + 1))
-      normals = 0.0_wp
-      do e = 1, size(pass%edges, 2)
-         along = x(:2, pass%edges(2, e)) - x(:2, pass%edges(1, e))
-         do i = 1, 3
-            if (pass%edges(i, e) == 0) cycle
-            k = row_of(rows(pass%first:pass%last)%node, pass%edges(i, e))
-            normals(:, k) = normals(:, k) + [along(2), -along(1)]/norm2(along)
-         end do
-      end do
-      do k = 1, size(normals, 2)
-         if (norm2(normals(:, k)) > 0.0_wp) normals(:, k) = normals(:, k)/norm2(normals(:, k))
-      end do
-   end subroutine find_normals
-
-   !> Where a node stands in an ascending list.
-   pure function row_of(nodes, node) result(k)
-      integer, intent(in) :: nodes(:), node
-      integer :: k
-      integer :: low, high
-
-      low = 1
-      high = size(nodes)
-      do while (low < high)
-         k = (low + high)/2
-         if (nodes(k) < node) then
-            low = k + 1
-         else
-            high = k
-         end if
-      end do
-      k = low
-   end function row_of
 
    !> A node against a plane or the other node of a gap element.
    pure subroutine place_fixed(row, i, terms)

@@ -38,9 +38,10 @@ contains
       if (allocated(error)) return
       do i = 1, scene%settings%max_events
          impact%new = may_hit(scene%rows) .and. .not. motion%touching .and. &
-               row_gaps(scene%rows, motion%motion) <= gap_limit .and. row_rates(scene%rows, motion%motion) < -impact%rate_limit
+               row_gaps(scene%rows, motion%motion) <= gap_limit .and. &
+               row_rates(scene%rows, motion%motion) < -impact%rate_limit
          if (.not. any(impact%new)) exit
-         impact%near = may_hit(scene%rows) .and. .not. motion%touching .and. .not. impact%new .and. &
+         impact%near = may_hit(scene%rows) .and. .not. (motion%touching .or. impact%new) .and. &
                .not. scene%rows%restitution > 0.0_wp .and. &
                row_gaps(scene%rows, motion%motion) <= gap_limit
          call apply_impact(scene, motion, impact, error)

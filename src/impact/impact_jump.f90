@@ -1,5 +1,5 @@
-!> The velocity jump of an impact: impulses over all rows concerned, with friction by Coulomb's cone,
-!> and capture of slow rebounds.
+!> The velocity jump of an impact: impulses over all rows concerned, with friction by Coulomb's
+!> cone, and capture of slow rebounds.
 module impact_jump
    use kinds, only: wp
    use errors, only: error_type

@@ -38,8 +38,8 @@ contains
       ahead = motion%motion
       ahead%t = ahead%t + dt
       ahead%d = ahead%d + dt*ahead%v
-      call place_rows(scene%rows, scene%geometry, scene%system%structure%map, motion%motion, ahead, &
-            reach(scene, motion, dt))
+      call place_rows(scene%rows, scene%geometry, scene%system%structure%map, motion%motion, &
+            ahead, reach(scene, motion, dt))
       scene%curvature = row_curvature(scene%rows, ahead)
       if (.not. any(motion%touching)) return
       call advance_smoothly(scene, motion, dt, scene%system%newmark%beta, trial, error)
@@ -81,8 +81,8 @@ contains
             reach(scene, motion, dt))
       where (weighted .and. scene%rows%facing) scene%curvature &
             = (row_rates(scene%rows, ahead) - rates)/(part*dt)
-      call place_rows(scene%rows, scene%geometry, scene%system%structure%map, motion%motion, ahead, &
-            reach(scene, motion, dt))
+      call place_rows(scene%rows, scene%geometry, scene%system%structure%map, motion%motion, &
+            ahead, reach(scene, motion, dt))
    end subroutine find_curvature
 
    !> Rows where the motion is.

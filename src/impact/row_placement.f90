@@ -23,8 +23,8 @@ module row_placement
 
 contains
 
-   !> Makes the rows of a scene at their places in the undeformed geometry. A row whose contactor has
-   !> no freedom along its normal is an error at its deck line.
+   !> Makes the rows of a scene at their places in the undeformed geometry. A row whose contactor
+   !> has no freedom along its normal is an error at its deck line.
    subroutine new_rows(self, geometry, list, model, structure, error)
       type(rows_type), intent(out) :: self
       type(contact_geometry_type), intent(in) :: geometry

@@ -21,13 +21,13 @@ module surfaces
    integer, parameter :: beta_automatic = 1
    integer, parameter :: beta_given = 2
 
-   !> `*SURFACE`: the nodes that may touch and, for TYPE=ELEMENT, the edges between them. Going along
-   !> an edge from its first node to its second, its body lies on the left.
+   !> `*SURFACE`: the nodes that may touch and, for TYPE=ELEMENT, the edges between them. Going
+   !> along an edge from its first node to its second, its body lies on the left.
    type :: surface_type
       character(len=name_length) :: name = ''
       integer, allocatable :: nodes(:)           !! node indices, ascending, each once
-      integer, allocatable :: edges(:, :)        !! (3, n) nodes: ends, then the middle one or 0;
-                                                 !! of no size for TYPE=NODE
+      !> (3, n) nodes: ends, then the middle one or 0; of no size for TYPE=NODE
+      integer, allocatable :: edges(:, :)
       integer, allocatable :: edge_element(:)    !! (n) element index of each edge
       type(place_type) :: place
    end type surface_type
