@@ -39,6 +39,7 @@ QUANTITIES = {
     "U": "displacement", "V": "velocity", "A": "acceleration", "RF": "reaction force",
     "S": "stress", "E": "strain", "PEEQ": "equivalent plastic strain", "ENER": "strain energy",
     "CF": "contact force", "CDIS": "smallest gap", "impulse": "contact impulse",
+    "CPRESS": "contact pressure", "CSLIP": "slip", "CSTATE": "state of contact",
 }
 
 

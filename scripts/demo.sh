@@ -1,5 +1,5 @@
 #!/bin/sh
-# Builds carom, runs three cases and draws them into demo/: scripts/demo.sh
+# Builds carom, runs six cases and draws them into demo/: scripts/demo.sh
 # Installs what is missing (Debian, Ubuntu; as root or with sudo) and needs nothing but a shell.
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd -P)
@@ -41,6 +41,13 @@ draw plot_history demo/buildings.h5 -o demo/buildings_history.png \
    --columns node_13/U1,node_23/U1,contact_FLOORS/CDIS
 draw plot_energy demo/buildings.h5 -o demo/buildings_energy.png
 draw animate demo/buildings.h5 -o demo/buildings.gif --scale 25
+
+compute input/hertz/nonmatching.inp demo/hertz.h5
+draw plot_contact demo/hertz.h5 -o demo/hertz_contact.png --hertz 0.75,998.901 --half
+compute input/two_discs/oblique.inp demo/discs.h5
+draw animate demo/discs.h5 -o demo/discs.gif --field MISES --every 2
+compute input/crack/slap.inp demo/crack.h5
+draw animate demo/crack.h5 -o demo/crack.gif --field S22 --scale 10 --every 4
 
 say "pictures and result files are in $root/demo"
 ls demo/*.png demo/*.gif

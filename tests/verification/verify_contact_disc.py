@@ -91,8 +91,8 @@ def check_oblique(checks):
             total, reference, current, size = contact.momentum()
             checks.at_most(np.abs(total - total[0]).max() / size, 1e-11, f'{name}: drift of momentum')
             checks.at_most(contact.energy[-1] / contact.energy[0], 1 + 1e-9, f'{name}: energy after')
-            checks.at_most(contact.balance / contact.energy[0], 2e-3, f'{name}: balance of energy')
-            checks.at_least(contact.gap.min(), -1e-6, f'{name}: smallest gap')
+            checks.at_most(contact.balance / contact.energy[0], 1e-4, f'{name}: balance of energy')
+            checks.at_least(contact.gap.min(), -1e-6 if rows else -1e-8, f'{name}: smallest gap')
             drifts.append(np.abs(current - current[0]).max() / size)
             print(f'        {name}: angular momentum drifts by {drifts[-1]:.3g} about the current '
                   f'places, {np.abs(reference - reference[0]).max() / size:.3g} about the undeformed')
