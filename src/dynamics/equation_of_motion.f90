@@ -17,6 +17,7 @@ module equation_of_motion
    public :: system_type
    public :: predict_motion, fixed_force, residual, solve_motion, prepare_motion
    public :: prepare_mass, solve_mass, force_balance, impose, resisting_force, settle_massless
+   public :: rigid_mass
 
    !> A structure under the loads and conditions of a step, with its matrices.
    type :: system_type
@@ -145,6 +146,21 @@ contains
             - resisting_force(self, scheme_implicit, at, state%history) &
             - resisting_force(self, scheme_explicit, at, state%history)
    end function force_balance
+
+   !> The mass that each freedom has in a translation of all: M times one in its direction. Its sum
+   !> with the velocities is the linear momentum, whatever the mass matrix.
+   function rigid_mass(self) result(mass)
+      type(system_type), intent(in) :: self
+      real(wp) :: mass(self%structure%map%n_freedoms)
+      real(wp) :: moved(self%structure%map%n_freedoms)
+      integer :: i
+
+      mass = 0.0_wp
+      do i = 1, 3
+         moved = merge(1.0_wp, 0.0_wp, self%structure%map%dof == i)
+         mass = mass + moved*inertia_force(self%structure, moved)
+      end do
+   end function rigid_mass
 
    !> Makes M + (1 + alpha)(gamma h C + beta h^2 K) ready, or K in a static step.
    subroutine prepare_motion(self, dt, beta, d, history, error)

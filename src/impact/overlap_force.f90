@@ -4,7 +4,7 @@ module overlap_force
    use kinds, only: wp
    use errors, only: error_type, new_error, status_numerical
    use complementarity, only: solve_complementarity, solve_equality
-   use constraint_rows, only: row_gaps, row_accelerations, gap_size
+   use constraint_rows, only: row_gaps, row_accelerations, gap_size, law_overlap
    use impact_scene, only: scene_type, contact_motion_type, gap_tolerance
    use row_compliance, only: compliance_type, find_compliance
    implicit none
@@ -39,7 +39,8 @@ contains
       real(wp), allocatable :: lambda(:)
       real(wp) :: limit
 
-      eligible = scene%rows%facing .and. .not. (to%touching .or. to%leaving)
+      eligible = scene%rows%facing .and. scene%rows%law == law_overlap .and. .not. &
+            (to%touching .or. to%leaving)
       free_gaps = row_gaps(scene%rows, to%motion) + beta_dt2*row_accelerations(scene%rows, delta)
       limit = gap_tolerance*gap_size(scene%rows, to%motion, 0.0_wp)
       gaps = free_gaps

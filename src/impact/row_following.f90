@@ -4,7 +4,8 @@ module row_following
    use kinds, only: wp
    use errors, only: error_type
    use motion_state, only: state_type
-   use constraint_rows, only: row_gaps, row_rates, row_curvature, rate_size, law_penalty
+   use constraint_rows, only: row_gaps, row_rates, row_curvature, rate_size, law_closed, &
+         law_penalty
    use row_placement, only: place_rows
    use impact_scene, only: scene_type, contact_motion_type, event_type, record_event, &
          event_release, rate_tolerance
@@ -20,6 +21,7 @@ module row_following
    !> Gaps of rows in contact are closed to this part of the geometry's size.
    real(wp), parameter :: closed_tolerance = 1.0e-14_wp
    integer, parameter :: max_rounds = 5
+   integer, parameter :: closed_trials = 3
 
 contains
 
@@ -33,6 +35,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(state_type) :: ahead
       type(contact_motion_type) :: trial
+      integer :: n_trials, i
 
       if (.not. scene%rows%moving) return
       ahead = motion%motion
@@ -41,10 +44,16 @@ contains
       call place_rows(scene%rows, scene%geometry, scene%system%structure%map, motion%motion, &
             ahead, reach(scene, motion, dt))
       scene%curvature = row_curvature(scene%rows, ahead)
-      if (.not. any(motion%touching)) return
-      call advance_smoothly(scene, motion, dt, scene%system%newmark%beta, trial, error)
-      if (allocated(error)) return
-      call rows_at(scene, motion, trial, dt)
+      n_trials = 0
+      if (any(motion%touching .or. motion%lambda > 0.0_wp)) n_trials = 1
+      ! what has no mass to be moved by when rows are settled is placed by more trials
+      if (any(scene%rows%law == law_closed .and. (motion%lambda > 0.0_wp .or. &
+            row_gaps(scene%rows, ahead) < 0.0_wp))) n_trials = closed_trials
+      do i = 1, n_trials
+         call advance_smoothly(scene, motion, dt, scene%system%newmark%beta, trial, error)
+         if (allocated(error)) return
+         call rows_at(scene, motion, trial, dt)
+      end do
    end subroutine rows_ahead
 
    !> Rows where a motion has led to.

@@ -85,7 +85,7 @@ contains
                = model%pairs(list%rows(i)%model_pair)%redistributed
          select case (interaction%method)
          case (method_fictitious_force)
-            self%law(i) = law_overlap
+            self%law(i) = merge(law_closed, law_overlap, self%massless(i))
          case (method_penalty)
             self%law(i) = law_penalty
          case (method_lagrange)

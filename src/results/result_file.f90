@@ -13,7 +13,8 @@ module result_file
    use hdf5_file, only: hdf5_file_type
    use column_table, only: column_table_type
    use output_plan, only: plan_type, new_plan, is_due
-   use snapshot, only: snapshot_type, take_snapshot, state_stuck
+   use equation_of_motion, only: rigid_mass
+   use snapshot, only: snapshot_type, take_snapshot, on_nodes, state_stuck
    use history_recorder, only: history_type, new_history, record_history
    use energy_recorder, only: new_energies, record_energies
    use grid_recorder, only: grid_type, new_grid, record_frame
@@ -129,6 +130,10 @@ contains
       call write_schemes(self, scene, error)
       if (allocated(error)) return
       call write_fixed(self, scene, error)
+      if (allocated(error)) return
+      call self%file%write_dataset('/model/mass', on_nodes(scene%system%structure%map%freedom, &
+            rigid_mass(scene%system)), &
+            'mass of each point in directions 1, 2, 3; with V it gives the linear momentum', error)
    end subroutine write_system
 
    !> How each element goes through time.

@@ -94,7 +94,10 @@ class Contact:
     def momentum(self, density=1.0, lumped=True):
         """Linear (frames, 2) and angular momentum (frames), the latter about the places of the
         undeformed bodies and about the current ones; and the sum of the sizes of all parts."""
-        mass = self.masses(density, lumped)
+        if density is None:           # contact nodes without mass: as the program says
+            mass = self.run['model/mass'][:, 0]
+        else:
+            mass = self.masses(density, lumped)
         x = self.run['VTKHDF/Points'][:, :2]
         u, v = self.frames('U')[..., :2], self.frames('V')[..., :2]
         p = mass[:, None] * v
