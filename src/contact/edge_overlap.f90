@@ -4,7 +4,7 @@
 !> differ by less than 45 degrees, interpolated in between with the shape functions.
 module edge_overlap
    use kinds, only: wp
-   use segment_projection, only: cut_edge, edge_frame, edge_functions
+   use segment_projection, only: closest_on_edge, cut_edge, edge_frame, edge_functions
    use target_surface, only: edge_coordinates, edges_near, target_type
    implicit none
    private
@@ -13,8 +13,13 @@ module edge_overlap
 
    !> Cosine of the largest angle between two edges that a mean normal is taken for.
    real(wp), parameter :: kink_limit = 0.7_wp
-   !> A target edge whose normal has a smaller component along the slave's inward one is its rear.
-   real(wp), parameter :: facing_limit = 0.1_wp
+   !> A target edge whose normal has a smaller component along the slave's inward one is its rear
+   !> or goes on behind a corner: distances along the normal to it would tell of no contact.
+   real(wp), parameter :: facing_limit = 0.5_wp
+   !> A point that overlaps an edge by more than a shallow share of its own edge's length is in
+   !> contact with it if all others are no closer than a share of the overlap.
+   real(wp), parameter :: shallow = 1.0e-3_wp
+   real(wp), parameter :: closest_share = 0.5_wp
    !> Pieces of an edge shorter than this in s are left out.
    real(wp), parameter :: shortest = 1.0e-12_wp
 
@@ -75,31 +80,35 @@ contains
    end function inward_normal
 
    !> Divides an edge at the ends of the target's edges: breaks(1) = -1 < ... < breaks(n) = 1.
-   pure subroutine find_breaks(self, target, x_now, breaks, n)
+   pure subroutine find_breaks(self, target, x_now, breaks, nodes, n)
       type(slave_edge_type), intent(in) :: self
       type(target_type), intent(in) :: target    !! with the edges of set_slave_edge
       real(wp), intent(in) :: x_now(:, :)
       real(wp), intent(inout) :: breaks(:)       !! with room for two more than twice those edges
+      integer, intent(inout) :: nodes(:)         !! the target's there, 0 at the ends of the edge
       integer, intent(out) :: n
       integer :: i, j
       logical :: found
       real(wp) :: s
 
       breaks(1) = -1.0_wp
+      nodes(1) = 0
       n = 1
       do i = 1, target%n_found
          do j = 1, 2
             call place_opposite(self, x_now(1:2, target%edges(j, target%found(i))), s, found)
-            if (found) call insert_break(s, breaks, n)
+            if (found) call insert_break(s, target%edges(j, target%found(i)), breaks, nodes, n)
          end do
       end do
-      call insert_break(1.0_wp, breaks, n)
+      call insert_break(1.0_wp, 0, breaks, nodes, n)
    end subroutine find_breaks
 
    !> Into ascending order, unless it is there already.
-   pure subroutine insert_break(s, breaks, n)
+   pure subroutine insert_break(s, node, breaks, nodes, n)
       real(wp), intent(in) :: s
+      integer, intent(in) :: node
       real(wp), intent(inout) :: breaks(:)
+      integer, intent(inout) :: nodes(:)
       integer, intent(inout) :: n
       integer :: i
 
@@ -109,6 +118,8 @@ contains
       end do
       breaks(i + 2:n + 1) = breaks(i + 1:n)
       breaks(i + 1) = s
+      nodes(i + 2:n + 1) = nodes(i + 1:n)
+      nodes(i + 1) = node
       n = n + 1
    end subroutine insert_break
 
@@ -147,7 +158,8 @@ contains
    end function cross
 
    !> The target edge that is opposite to a point of a slave edge, the nearest if there are several;
-   !> one that overlaps by more than the length of the slave edge is not.
+   !> one that overlaps by more than the length of the slave edge is not, nor is one that a point
+   !> inside the target would leave it through though another edge is much closer.
    pure subroutine find_opposite(self, target, x_now, s, edge)
       type(slave_edge_type), intent(in) :: self
       type(target_type), intent(in) :: target    !! with the edges of set_slave_edge
@@ -157,9 +169,10 @@ contains
       integer :: i
       logical :: found
       real(wp) :: point(2), normal(2), x(2, 3), place, fraction, least, deep, distance
-      real(wp) :: shape(3), rise(3), across(2), along(2), outward(2), stretch, bend
+      real(wp) :: shape(3), rise(3), across(2), along(2), outward(2), stretch, bend, overlap
 
       edge = 0
+      overlap = 0.0_wp
       least = huge(1.0_wp)
       call edge_functions(self%n, s, shape, rise)
       point = matmul(self%x, shape)
@@ -178,7 +191,32 @@ contains
          if (dot_product(outward, normal) < facing_limit) cycle
          least = distance
          edge = target%found(i)
+         overlap = deep - fraction*(deep + self%range)
       end do
+      if (overlap <= shallow*norm2(self%x(:, 2) - self%x(:, 1))) return
+      if (depth_in(self, target, x_now, point) < closest_share*overlap) edge = 0
    end subroutine find_opposite
+
+   !> How far a point of a slave edge is from the nearest of the edges found, other than its own.
+   pure function depth_in(self, target, x_now, point) result(depth)
+      type(slave_edge_type), intent(in) :: self
+      type(target_type), intent(in) :: target
+      real(wp), intent(in) :: x_now(:, :)
+      real(wp), intent(in) :: point(2)
+      real(wp) :: depth
+      integer :: i, j
+      real(wp) :: x(2, 3), s, s_free, shape(3), rise(3)
+
+      depth = huge(1.0_wp)
+      do i = 1, target%n_found
+         associate (edge => target%found(i))
+            if (any([(any(self%nodes(:self%n) == target%edges(j, edge)), j=1, 2)])) cycle
+            x = edge_coordinates(target, edge, x_now)
+            call closest_on_edge(x(:, :target%n_edge_nodes(edge)), point, s, s_free)
+            call edge_functions(target%n_edge_nodes(edge), s, shape, rise)
+            depth = min(depth, norm2(point - matmul(x, shape)))
+         end associate
+      end do
+   end function depth_in
 
 end module edge_overlap

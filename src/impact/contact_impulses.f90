@@ -20,13 +20,17 @@ module contact_impulses
    private
 
    public :: restart_acceleration, hold_acceleration, carry_acceleration
-   public :: project_touching, set_rates, follow_wall
+   public :: project_touching, gaps_to_close, has_jumped, set_rates, follow_wall
    public :: book_impulse, book_friction, dependent_impulses
 
    !> Opening rates below this part of the speeds are round-off.
    real(wp), parameter :: thrown_tolerance = 1.0e-9_wp
    !> So is slip below this part of the largest speed.
    real(wp), parameter :: rest_tolerance = 1.0e-12_wp
+   !> Gaps of weighted rows jump when parts of a surface come to face each other, or cease to.
+   !> One of more than this part of the size has, and is not closed: that would move bodies apart
+   !> that did not hit, and give them energy.
+   real(wp), parameter :: largest_shift = 1.0e-4_wp
    !> A friction force within this part of its limit slips.
    real(wp), parameter :: slip_tolerance = 1.0e-9_wp
 
@@ -225,8 +229,7 @@ contains
       logical :: solved
 
       if (.not. any(motion%touching)) return
-      gaps = merge(row_gaps(scene%rows, motion%motion), 0.0_wp, &
-            motion%touching .and. scene%rows%facing)
+      gaps = gaps_to_close(scene, motion)
       rates = merge(row_rates(scene%rows, motion%motion), 0.0_wp, motion%touching)
       if (maxval(abs(gaps)) <= gap_limit .and. maxval(abs(rates)) <= rate_limit) return
       call mass_compliance(scene, motion%touching, compliance, error, .true.)
@@ -239,6 +242,27 @@ contains
       rates = 0.0_wp
       call set_rates(scene, motion, motion%touching, rates, impulse, error)
    end subroutine project_touching
+
+   !> Gaps of touching rows that are to be zero.
+   function gaps_to_close(scene, motion) result(gaps)
+      type(scene_type), intent(in) :: scene
+      type(contact_motion_type), intent(in) :: motion
+      real(wp) :: gaps(scene%rows%n)
+
+      gaps = merge(row_gaps(scene%rows, motion%motion), 0.0_wp, &
+            motion%touching .and. scene%rows%facing)
+      where (has_jumped(scene, gaps)) gaps = 0.0_wp
+   end function gaps_to_close
+
+   !> Rows whose gaps while they touch tell of a jump.
+   pure function has_jumped(scene, gaps) result(jumped)
+      type(scene_type), intent(in) :: scene
+      real(wp), intent(in) :: gaps(:)            !! (n_rows)
+      logical :: jumped(size(gaps))
+
+      jumped = scene%rows%weight > 0.0_wp .and. abs(gaps) > largest_shift*scene%geometry%size &
+            .and. scene%rows%moving
+   end function has_jumped
 
    !> Moves the bodies; what that does to their energy is booked where they slide on each other. (On
    !> fixed rows it is round-off.)

@@ -9,7 +9,7 @@ module row_following
    use row_placement, only: place_rows
    use impact_scene, only: scene_type, contact_motion_type, event_type, record_event, &
          event_release, rate_tolerance
-   use contact_impulses, only: project_touching
+   use contact_impulses, only: project_touching, gaps_to_close, has_jumped
    use constrained_step, only: advance_smoothly
    implicit none
    private
@@ -120,7 +120,8 @@ contains
    end function reach
 
    !> At the end of a step: rows at their exact places, those that touch closed to round-off in gap
-   !> and gap rate; a row that has slid off its surface is released.
+   !> and gap rate; a row that has slid off its surface is released, as is one whose gap has jumped
+   !> open.
    subroutine settle_rows(scene, motion, dt, error)
       type(scene_type), intent(inout) :: scene
       type(contact_motion_type), intent(inout) :: motion
@@ -135,7 +136,7 @@ contains
          call rows_here(scene, motion, dt)
          call release_lost(scene, motion)
          if (.not. any(motion%touching)) return
-         gaps = merge(row_gaps(scene%rows, motion%motion), 0.0_wp, motion%touching)
+         gaps = gaps_to_close(scene, motion)
          if (i > 1 .and. maxval(abs(gaps)) <= limit) return
          call project_touching(scene, motion, limit, &
                rate_tolerance*rate_size(scene%rows, motion%motion), error)
@@ -146,10 +147,14 @@ contains
    subroutine release_lost(scene, motion)
       type(scene_type), intent(inout) :: scene
       type(contact_motion_type), intent(inout) :: motion
+      real(wp) :: gaps(scene%rows%n)
+      logical :: kept(scene%rows%n)
       integer :: i
 
+      gaps = row_gaps(scene%rows, motion%motion)
+      kept = scene%rows%facing .and. .not. (gaps > 0.0_wp .and. has_jumped(scene, gaps))
       do i = 1, scene%rows%n
-         if (.not. motion%touching(i) .or. scene%rows%facing(i)) cycle
+         if (.not. motion%touching(i) .or. kept(i)) cycle
          motion%touching(i) = .false.
          call record_event(scene, event_type(motion%motion%t, event_release, i, 0.0_wp, 0.0_wp, &
                0.0_wp, scene%system%newmark%beta))

@@ -212,6 +212,22 @@ def check_two_bodies(checks):
                     checks.at_most(np.max(np.abs(run['energy/balance_error'])) / total[0], 1e-5, f'{name}: balance error')
 
 
+def check_sliding_off(checks):
+    """A block slides off the end of a fixed one, tips over and falls: damped, so energy only falls."""
+    for nodes in (4, 8):
+        for friction in (None, 0.1):
+            deck = Deck().body('low', block(6, 1, nodes, (0, -1), (3, 0)), 1e4, 0.3).fix('low')
+            deck.body('top', block(2, 1, nodes, (1.2, 0), (2.2, 0.5)), 1e3, 0.3, more='*DAMPING, BETA=0.005\n')
+            deck.surface('F', ('low', 3), ('low', 2)).surface('S', *[('top', side) for side in (1, 2, 4, 3)])
+            deck.speed('top', 3.0 if friction else 1.5).pair('S', 'F', 'TYPE=SURFACE TO SURFACE', friction=friction)
+            run = run_deck(deck.text(0.0025, 1.6, '*DLOAD\ntop, GRAV, 9.81, 0., -1.\n'))
+            name = f'slides off the end, {nodes} nodes, friction {friction}'
+            total = run['energy/total'] - run['energy/external_work']
+            checks.at_most(np.max(np.diff(total)) / total[0], 1e-3, f'{name}: largest rise of energy')
+            checks.at_most(np.max(np.abs(run['energy/balance_error'])) / total[0], 1e-3, f'{name}: balance error')
+            checks.at_most(np.mean(frames(run, 'U')[-1, deck.first['top'][0]:, 1]), -0.2, f'{name}: falls')
+
+
 checks = Checks()
 check_loops(checks)
 check_kinks(checks)
@@ -220,4 +236,5 @@ check_throws(checks)
 check_oblique(checks)
 check_belt(checks)
 check_two_bodies(checks)
+check_sliding_off(checks)
 checks.finish()
