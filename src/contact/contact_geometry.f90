@@ -155,7 +155,10 @@ contains
       integer :: i, k
 
       positions%t = t
-      positions%reach = min(reach, widest_reach*self%size)
+      positions%reach = reach
+      ! a row whose gap counts as none may be as far away as that
+      if (allocated(self%allowance)) positions%reach = reach + maxval(abs(self%allowance))
+      positions%reach = min(positions%reach, widest_reach*self%size)
       positions%before = self%x + before
       positions%now = self%x + now
       call start_terms(terms, size(self%rows))

@@ -20,6 +20,8 @@ module interaction_reader
 
    public :: read_interactions, check_methods
 
+   !> Beyond it forces along the cone overflow.
+   real(wp), parameter :: most_friction = 1.0e6_wp
    character(len=word_length), parameter :: method_words(*) = [character(len=word_length) :: &
          'TRANSFORMATION', 'FICTITIOUS FORCE', 'PENALTY', 'LAGRANGE']
    integer, parameter :: methods(*) = [method_transformation, method_fictitious_force, &
@@ -209,8 +211,13 @@ contains
       call get_reals(fields, 1, 1, 'coefficient of friction', values, source, error)
       if (allocated(error)) return
       interaction%friction = values(1)
-      if (values(1) < 0.0_wp) call fail_at(error, source, field_place(fields, 1), &
-            'the coefficient of friction must not be negative', cure='write a number from 0 up')
+      if (values(1) < 0.0_wp) then
+         call fail_at(error, source, field_place(fields, 1), &
+               'the coefficient of friction must not be negative', cure='write a number from 0 up')
+      else if (values(1) > most_friction) then
+         call fail_at(error, source, field_place(fields, 1), &
+               'the coefficient of friction must not exceed 1e6', cure='1e6 sticks as well')
+      end if
    end subroutine read_friction
 
    !> RESTITUTION, RETURN and CAPTURE.

@@ -7,7 +7,7 @@ module reactions
    implicit none
    private
 
-   public :: reaction_forces
+   public :: reaction_forces, impulse_reactions
 
 contains
 
@@ -18,10 +18,29 @@ contains
       type(state_type), intent(in) :: state
       real(wp), intent(in) :: contact(:)         !! (n_freedoms) contact forces
       real(wp) :: reaction(size(contact))
-      integer :: c, i
 
       reaction = -force_balance(system, state) - contact
       if (.not. system%static) reaction = reaction + inertia_force(system%structure, state%a)
+      call keep_prescribed(system, reaction)
+   end function reaction_forces
+
+   !> The same of an impact: M (v+ - v-) - contact impulses at prescribed freedoms, zero elsewhere.
+   function impulse_reactions(system, change, contact) result(reaction)
+      type(system_type), intent(in) :: system
+      real(wp), intent(in) :: change(:)          !! (n_freedoms) v+ - v-
+      real(wp), intent(in) :: contact(:)         !! (n_freedoms) contact impulses
+      real(wp) :: reaction(size(contact))
+
+      reaction = inertia_force(system%structure, change) - contact
+      call keep_prescribed(system, reaction)
+   end function impulse_reactions
+
+   !> What dependent freedoms need goes to their masters; then only prescribed freedoms have any.
+   pure subroutine keep_prescribed(system, reaction)
+      type(system_type), intent(in) :: system
+      real(wp), intent(inout) :: reaction(:)     !! (n_freedoms)
+      integer :: c, i
+
       associate (map => system%structure%map)
          do c = 1, size(map%dependent)
             do i = map%master_first(c), map%master_first(c + 1) - 1
@@ -31,6 +50,6 @@ contains
          end do
          reaction = merge(reaction, 0.0_wp, map%prescribed)
       end associate
-   end function reaction_forces
+   end subroutine keep_prescribed
 
 end module reactions

@@ -11,6 +11,7 @@ module contact_impulses
    use structure, only: inertia_force, damping_force, strain_energy
    use external_load, only: load_at
    use energy_ledger, only: record_impact, record_friction
+   use reactions, only: impulse_reactions
    use constraint_rows, only: row_gaps, row_rates, row_accelerations, row_curvature, slip_rates, &
          slip_products, rate_size, gap_size, wall_rates, contact_forces, law_penalty
    use impact_scene, only: scene_type, contact_motion_type, note_contact_force, gap_tolerance
@@ -21,7 +22,7 @@ module contact_impulses
 
    public :: restart_acceleration, hold_acceleration, carry_acceleration
    public :: project_touching, gaps_to_close, has_jumped, set_rates, follow_wall
-   public :: book_impulse, book_friction, dependent_impulses
+   public :: book_impulse, book_friction, book_reactions, dependent_impulses
 
    !> Opening rates below this part of the speeds are round-off.
    real(wp), parameter :: thrown_tolerance = 1.0e-9_wp
@@ -186,7 +187,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(compliance_type) :: compliance
       real(wp), dimension(scene%rows%n) :: rates, available, impulse, after
-      real(wp) :: p(count(motion%touching)), limit
+      real(wp) :: p(count(motion%touching)), limit, v_before(size(motion%motion%v))
       logical :: solved
 
       thrown = .false.
@@ -209,9 +210,11 @@ contains
       end if
       impulse = 0.0_wp
       impulse(compliance%rows) = p - available(compliance%rows)
-      motion%motion%v = motion%motion%v + matmul(compliance%x, impulse(compliance%rows))
+      v_before = motion%motion%v
+      motion%motion%v = v_before + matmul(compliance%x, impulse(compliance%rows))
       after = row_rates(scene%rows, motion%motion)
       call book_impulse(scene, motion, impulse, rates, after)
+      call book_reactions(scene, motion, v_before, impulse, 0.0_wp*impulse)
       scene%impulse = scene%impulse + impulse
       thrown = motion%touching .and. after > limit
    end subroutine follow_wall
@@ -295,7 +298,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(compliance_type) :: compliance
       real(wp), dimension(scene%rows%n) :: before, after
-      real(wp) :: p(count(marked))
+      real(wp) :: p(count(marked)), v_before(size(motion%motion%v))
       logical :: solved
 
       impulse = 0.0_wp
@@ -308,10 +311,12 @@ contains
          call dependent_impulses(error)
          return
       end if
-      motion%motion%v = motion%motion%v + matmul(compliance%x, p)
+      v_before = motion%motion%v
+      motion%motion%v = v_before + matmul(compliance%x, p)
       impulse(compliance%rows) = p
       after = row_rates(scene%rows, motion%motion)
       call book_impulse(scene, motion, impulse, before, after)
+      call book_reactions(scene, motion, v_before, impulse, 0.0_wp*impulse)
       scene%impulse = scene%impulse + impulse
    end subroutine set_rates
 
@@ -340,6 +345,21 @@ contains
       call record_friction(scene%ledger, work)
       call record_impact(scene%ledger, work, 0.0_wp)
    end subroutine book_friction
+
+   !> Work of what moves prescribed freedoms on while impulses act on them: R . v at their velocity,
+   !> which no impulse changes.
+   subroutine book_reactions(scene, motion, v_before, impulse, friction)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(in) :: motion    !! after the impulses
+      real(wp), intent(in) :: v_before(:)                !! (n_freedoms)
+      real(wp), intent(in) :: impulse(:), friction(:)    !! (n_rows) along normals and tangents
+      real(wp) :: reaction(size(v_before))
+
+      if (size(scene%system%motions%motions) == 0) return
+      reaction = impulse_reactions(scene%system, motion%motion%v - v_before, &
+            contact_forces(scene%rows, impulse, friction, size(v_before)))
+      call record_impact(scene%ledger, 0.0_wp, dot_product(reaction, motion%motion%v))
+   end subroutine book_reactions
 
    subroutine dependent_impulses(error)
       type(error_type), allocatable, intent(out) :: error

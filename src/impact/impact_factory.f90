@@ -4,6 +4,7 @@ module impact_factory
    use errors, only: error_type
    use places, only: fail_at
    use model, only: model_type
+   use steps, only: step_type, procedure_dynamic
    use surfaces, only: interaction_type, method_fictitious_force, method_penalty, method_lagrange
    use contact_pairs, only: contact_pair_list_type
    use impact_scene, only: impact_settings_type
@@ -16,7 +17,7 @@ module impact_factory
    implicit none
    private
 
-   public :: make_impact_method
+   public :: make_impact_method, check_method
 
 contains
 
@@ -52,6 +53,8 @@ contains
       settings%fictitious = first%method == method_fictitious_force
       settings%iterated = settings%fictitious .and. .not. &
             any(model%interactions(list%rows%interaction)%friction > 0.0_wp)
+      settings%pure = settings%fictitious .and. .not. &
+            all(model%interactions(list%rows%interaction)%has_restitution)
       select case (first%method)
       case (method_fictitious_force)
          allocate (fictitious_force_type :: method)
@@ -63,6 +66,28 @@ contains
          allocate (transformation_type :: method)
       end select
    end subroutine make_impact_method
+
+   !> What a method cannot do in a step: the fictitious force of the end of an explicit step does not
+   !> move that end; the pure method leaves an overlap that a much shorter step would throw back.
+   subroutine check_method(model, settings, step, beta, error)
+      type(model_type), intent(in) :: model
+      type(impact_settings_type), intent(in) :: settings
+      type(step_type), intent(in) :: step
+      real(wp), intent(in) :: beta
+      type(error_type), allocatable, intent(out) :: error
+
+      if (.not. settings%fictitious .or. step%procedure /= procedure_dynamic) return
+      if (.not. beta > 0.0_wp) then
+         call fail_at(error, model%source, step%procedure_place, 'METHOD=FICTITIOUS FORCE in a ' &
+               //'step with beta = 0: the force of its end does not move the end', &
+               'take METHOD=TRANSFORMATION, or make elements implicit with *ELEMENT GROUP')
+      else if (settings%pure .and. .not. step%direct) then
+         call fail_at(error, model%source, step%procedure_place, 'METHOD=FICTITIOUS FORCE ' &
+               //'without RESTITUTION in automatic increments: what overlap a long one leaves ' &
+               //'a short one throws back', &
+               'take *DYNAMIC, DIRECT, give a RESTITUTION, or another METHOD')
+      end if
+   end subroutine check_method
 
    pure function agree(one, other) result(same)
       type(interaction_type), intent(in) :: one, other

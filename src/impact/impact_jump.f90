@@ -9,7 +9,7 @@ module impact_jump
    use row_compliance, only: compliance_type, mass_compliance, join_rates, split_forces
    use rough_rows, only: solve_rows
    use contact_impulses, only: hold_acceleration, restart_acceleration, project_touching, &
-         book_impulse, book_friction, dependent_impulses
+         book_impulse, book_friction, book_reactions, dependent_impulses
    implicit none
    private
 
@@ -38,9 +38,11 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(compliance_type) :: compliance
       real(wp), dimension(scene%rows%n) :: before, after, slip, impulse, friction
+      real(wp) :: v_before(size(motion%motion%v))
       logical :: held(scene%rows%n), was(scene%rows%n)
 
       was = motion%touching
+      v_before = motion%motion%v
       before = row_rates(scene%rows, motion%motion)
       slip = slip_rates(scene%rows, motion%motion)
       call mass_compliance(scene, was .or. impact%new .or. impact%near, compliance, error)
@@ -51,6 +53,7 @@ contains
       motion%touching = held
       call book_impulse(scene, motion, impulse, before, after)
       call book_friction(scene, motion, friction, slip)
+      call book_reactions(scene, motion, v_before, impulse, friction)
       call project_touching(scene, motion, 0.0_wp, 0.0_wp, error)
       if (allocated(error)) return
       call restart_acceleration(scene, motion, error)

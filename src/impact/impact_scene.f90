@@ -71,6 +71,7 @@ module impact_scene
       integer :: max_events = 100
       logical :: fictitious = .false.            !! overlapping rows get a fictitious force
       logical :: iterated = .false.              !! found by an iteration: no friction
+      logical :: pure = .false.                  !! of some rows without restitution
       real(wp) :: return_parameter = 0.3_wp      !! alpha
       logical :: direct = .false.
       logical :: locate_release = .true.

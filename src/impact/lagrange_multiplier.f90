@@ -42,7 +42,7 @@ module lagrange_multiplier
    use row_compliance, only: compliance_type, mass_compliance, join_rates, split_forces
    use rough_rows, only: solve_rows
    use contact_impulses, only: carry_acceleration, project_touching, follow_wall, book_impulse, &
-         book_friction, dependent_impulses
+         book_friction, book_reactions, dependent_impulses
    use row_following, only: rows_ahead, rows_here, settle_rows
    use first_contacts, only: find_first_contacts
    use constrained_step, only: advance_smoothly
@@ -223,6 +223,7 @@ contains
       after = row_rates(scene%rows, to%motion)
       call book_impulse(scene, to, impulse, before, after)
       call book_friction(scene, to, friction, slip)
+      call book_reactions(scene, to, v_before, impulse, friction)
       scene%impulse = scene%impulse + impulse
       held = (was .or. closed) .and. (whole > 0.0_wp .or. &
             after <= rate_tolerance*rate_size(scene%rows, to%motion))

@@ -14,6 +14,8 @@ module overlap_force
 
    !> The iteration has ended when forces change by no more than this part.
    real(wp), parameter :: force_tolerance = 1.0e-14_wp
+   !> Where alpha is so close to one that more rounds are needed, the fixed point is solved for.
+   integer, parameter :: most_rounds = 10000
 
    !> Overlapping rows with the rows in sustained contact held beside them.
    type :: overlap_type
@@ -124,7 +126,7 @@ contains
       real(wp) :: gaps(size(lambda)), previous(size(lambda))
       integer :: i, max_rounds
 
-      max_rounds = 100 + ceiling(-80.0_wp/log(scene%settings%return_parameter))
+      max_rounds = min(100 + ceiling(-80.0_wp/log(scene%settings%return_parameter)), most_rounds)
       gaps = free_gaps
       lambda = 0.0_wp
       do i = 1, max_rounds

@@ -5,7 +5,7 @@ module row_following
    use errors, only: error_type
    use motion_state, only: state_type
    use constraint_rows, only: row_gaps, row_rates, row_curvature, rate_size, law_closed, &
-         law_penalty
+         law_penalty, law_overlap
    use row_placement, only: place_rows
    use impact_scene, only: scene_type, contact_motion_type, event_type, record_event, &
          event_release, rate_tolerance
@@ -105,7 +105,8 @@ contains
             motion%motion, reach(scene, motion, dt))
    end subroutine rows_here
 
-   !> How far rows look for partners: what may be gone in the step, and how deep springs are in.
+   !> How far rows look for partners: what may be gone in the step, how deep springs are in, and what
+   !> fictitious forces of earlier steps, which may have been longer, have left.
    pure function reach(scene, motion, dt) result(distance)
       type(scene_type), intent(in) :: scene
       type(contact_motion_type), intent(in) :: motion
@@ -116,6 +117,8 @@ contains
       distance = reach_factor*dt*(maxval(abs(motion%motion%v)) + dt*maxval(abs(motion%motion%a)))
       if (any(scene%rows%law == law_penalty)) distance = distance + maxval( &
             motion%lambda/scene%rows%stiffness, mask=scene%rows%law == law_penalty)
+      if (any(scene%rows%law == law_overlap)) distance = distance + max(0.0_wp, &
+            -minval(row_gaps(scene%rows, motion%motion), mask=scene%rows%law == law_overlap))
       distance = max(distance, least_share*scene%geometry%size)
    end function reach
 

@@ -22,7 +22,7 @@ module scene_setup
          check_overlaps
    use impact_method, only: impact_method_type
    use automatic_groups, only: partition_type, resolve_automatic
-   use impact_factory, only: make_impact_method
+   use impact_factory, only: make_impact_method, check_method
    implicit none
    private
 
@@ -234,6 +234,8 @@ contains
          call put_values(system%structure, step%initial_velocities, self%motion%motion%v)
          call impose(system, self%motion%motion)
          call check_critical(self, step, error)
+         if (allocated(error)) return
+         call check_method(self%model, self%scene%settings, step, system%newmark%beta, error)
       end associate
    end subroutine begin_step
 

@@ -45,6 +45,20 @@ def check_slipping_off(checks):
     checks.at_most(np.abs(total - total[0]).max() / size, 1e-11, 'slipping off: drift of momentum')
 
 
+def check_driven(checks, method, pair):
+    """A bar hits one that is moved, all of it, at a given speed: what moves it does the work of the
+    impulses, those of friction included."""
+    deck = make.deck('driven', make.mesh((3.0, 12, 4, 4), (4.0, 16, 5, 4, 0.25)), (5, -5), pair,
+                     METHODS[method], '*FRICTION\n0.3\n')
+    deck = deck.replace('right, 1, -5\n', 'right, 1, -5\nright, 2, 0.5\n')
+    deck = deck.replace('<dt>, <end>\n', '<dt>, <end>\n*BOUNDARY, TYPE=VELOCITY\n'
+                        'right, 1, 1, -5\nright, 2, 2, 0.5\n')
+    contact = folder.run(deck, dt=0.25 / 30, end=0.15, nu=0.3)
+    name = f'{method}, {pair}: a driven bar'
+    checks.at_least(np.abs(contact.impulse).sum(), 1.0, f'{name} is hit')
+    checks.at_most(contact.balance / contact.energy[0], 1e-9, f'{name}, energy balance')
+
+
 def check(checks, method, mesh, pair, friction):
     name = f'{method}, {mesh}, {pair}' + (', friction' if friction else '')
     contact = run(METHODS[method], MESHES[mesh], PAIRS[pair], friction)
@@ -61,6 +75,8 @@ def check(checks, method, mesh, pair, friction):
 
 checks = Checks()
 check_slipping_off(checks)
+for method in ('transformation', 'transformation, e = 0.5', 'Lagrange'):
+    check_driven(checks, method, PAIRS['node rows'])
 for method, mesh in itertools.product(METHODS, MESHES):
     for friction in (False, True):
         check(checks, method, mesh, 'node rows', friction)
