@@ -138,7 +138,8 @@ contains
          if (self%rows(i)%kind /= row_surface) return
          n_targets = n_targets + 1
          pass%target = n_targets
-         call new_target(self%targets(n_targets), model%surfaces(master)%edges, model%nodes%n)
+         call new_target(self%targets(n_targets), model%surfaces(master)%edges, model%nodes%n, &
+               model%surfaces(master)%edge_element)
          pass%weighted = pair%weighted
          if (pass%weighted) call new_target(pass%contactor, pass%edges, model%nodes%n)
       end associate

@@ -13,7 +13,8 @@
 module contact_search
    use kinds, only: int64, wp
    use segment_projection, only: closest_on_edge, cut_edge, edge_frame, edge_functions
-   use target_surface, only: edge_coordinates, edges_near, mean_normal, target_type
+   use target_surface, only: belongs_to, edge_coordinates, edges_near, is_next_to, mean_normal, &
+         target_type
    implicit none
    private
 
@@ -21,12 +22,17 @@ module contact_search
 
    !> Overlaps up to this share of an edge's length are recognised without a path across the edge.
    real(wp), parameter :: overlap_share = 0.5_wp
+   !> The same of a surface's own nodes: the other side of a thin part is no partner.
+   real(wp), parameter :: own_overlap_share = 0.125_wp
    !> A node closer to a vertex than this share of the edge's length touches it.
    real(wp), parameter :: touch_share = 1.0e-6_wp
    !> Cosine of the largest angle between two edges that a mean normal is taken for.
    real(wp), parameter :: kink_limit = 0.7_wp
    !> A surface whose normal has a larger component along the node's than this is its rear.
    real(wp), parameter :: facing_limit = 0.1_wp
+
+   !> What is round a corner is no farther along the surface than this times the distance.
+   real(wp), parameter :: walk_share = 3.0_wp
 
    type :: partner_type
       integer :: edge = 0                        !! of the target, 0: none
@@ -49,6 +55,7 @@ module contact_search
       real(wp) :: before(2) = 0.0_wp, now(2) = 0.0_wp
       real(wp) :: facing(2) = 0.0_wp             !! outward normal at the node, or zero
       real(wp) :: limit = facing_limit           !! of the partner's normal along it
+      real(wp) :: share = overlap_share         !! of an edge that may be overlapped
       real(wp) :: reach = 0.0_wp
    end type query_type
 
@@ -57,8 +64,11 @@ contains
    !> Finds the partner of a node: where its path relative to the edges crosses one from its outer
    !> to its inner side, the first edge crossed, or one near it that is closer at the end; else the
    !> closest edge, when a gap is not more than the reach and an overlap not more than the reach and
-   !> half the length of the edge, or than twice the relative motion. Edges with this node are never
-   !> partners. The target must have been updated with the same positions.
+   !> half the length of the edge (an eighth, if the node is the surface's own), or than twice the
+   !> relative motion. Edges with this node are never
+   !> partners, nor are those of elements with it. Edges round a corner from its own, no farther
+   !> along the surface than three times the distance, are if they oppose it, as at the tip of a
+   !> crack. The target must have been updated with the same positions.
    pure subroutine find_partner(self, x_before, x_now, node, reach, allowed_normal, partner)
       type(target_type), intent(inout) :: self
       real(wp), intent(in) :: x_before(:, :), x_now(:, :) !! (2 or 3, n_nodes) at the step's ends
@@ -75,6 +85,7 @@ contains
             facing=allowed_normal, reach=reach)
       if (self%leaving(node) + self%arriving(node) > 0) then
          query%limit = -facing_limit
+         query%share = own_overlap_share
          if (.not. any(abs(allowed_normal) > 0.0_wp)) query%facing = mean_normal(self, x_now, node)
       end if
       path = query%now - query%before - self%motion
@@ -86,7 +97,7 @@ contains
       first = huge(1.0_wp)
       crossed = 0
       do i = 1, self%n_found
-         if (any(self%edges(:, self%found(i)) == node)) cycle
+         if (belongs_to(self, self%found(i), node)) cycle
          self%n_tests = self%n_tests + 1
          distance = least
          call compare(self, x_before, x_now, query, self%found(i), trial, distance, fraction)
@@ -216,7 +227,7 @@ contains
       if (distance > max(query%reach, limit)) return
       call make_partner(self, x_now, query, edge, s, s_free, trial)
       if (trial%edge == 0) return
-      limit = max(limit, min(query%reach, 2.0_wp*overlap_share*trial%stretch))
+      limit = max(limit, min(query%reach, 2.0_wp*query%share*trial%stretch))
       if (trial%gap > query%reach .or. -trial%gap > limit) trial%edge = -edge
    end subroutine compare
 
@@ -311,7 +322,7 @@ contains
       real(wp), intent(in) :: s, s_free
       type(partner_type), intent(out) :: partner
       integer :: other
-      real(wp) :: offset(2), distance
+      real(wp) :: offset(2), distance, facing
 
       partner%edge = edge
       partner%s = s
@@ -324,7 +335,10 @@ contains
       end if
       partner%gap = dot_product(partner%normal, offset)
       partner%tangent = [-partner%normal(2), partner%normal(1)]
-      if (dot_product(partner%normal, query%facing) > query%limit) partner%edge = 0
+      facing = dot_product(partner%normal, query%facing)
+      if (facing > query%limit) partner%edge = 0
+      if (facing <= -kink_limit .or. partner%edge == 0) return
+      if (is_next_to(self, x_now, edge, query%node, walk_share*norm2(offset))) partner%edge = 0
    end subroutine make_partner
 
    !> Whether a node is not the vertex's at the end of an edge: there is no other edge and the node

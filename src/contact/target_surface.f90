@@ -9,7 +9,7 @@ module target_surface
    private
 
    public :: target_type, new_target, update_target, edges_near, boxes_apart
-   public :: edge_coordinates, mean_normal
+   public :: edge_coordinates, mean_normal, belongs_to, is_next_to
 
    !> An edge moves by no more than this times the largest motion of its nodes.
    real(wp), parameter :: node_share = 1.25_wp
@@ -21,6 +21,7 @@ module target_surface
       integer, allocatable :: n_edge_nodes(:)    !! (n) 2 or 3
       integer, allocatable :: next(:)            !! (n) edge that starts where this ends, or 0
       integer, allocatable :: previous(:)        !! (n) edge that ends where this starts, or 0
+      integer, allocatable :: element(:)         !! (n) that an edge is a side of, 0: not known
       integer, allocatable :: nodes(:)           !! nodes of the edges, ascending
       integer, allocatable :: leaving(:)         !! (n_nodes) edge a node is first or middle of
       integer, allocatable :: arriving(:)        !! (n_nodes) edge a node is last or middle of
@@ -43,15 +44,18 @@ contains
 
    !> Takes the edges of a surface and finds their neighbours. From the first node of an edge to the
    !> second its body is on the left.
-   pure subroutine new_target(self, edges, n_nodes)
+   pure subroutine new_target(self, edges, n_nodes, element)
       type(target_type), intent(out) :: self
       integer, intent(in) :: edges(:, :)         !! (3, n): the ends, the middle node or 0
       integer, intent(in) :: n_nodes             !! of the model
+      integer, intent(in), optional :: element(:)   !! (n)
       integer :: e, i, n
 
       n = size(edges, 2)
       self%edges = edges
       self%n_edge_nodes = merge(3, 2, edges(3, :) > 0)
+      self%element = [(0, e=1, n)]
+      if (present(element)) self%element = element
       allocate (self%leaving(n_nodes), self%arriving(n_nodes), source=0)
       do e = n, 1, -1
          self%leaving(edges(1, e)) = e
@@ -140,6 +144,55 @@ contains
       call find_in_box(self%bins, low - self%drift, high - self%drift, &
             reach + node_share*(self%slack + self%unrest), self%found, self%n_found)
    end subroutine edges_near
+
+   !> True if an edge has a node, or is a side of an element that has it on the surface.
+   pure function belongs_to(self, edge, node) result(belongs)
+      type(target_type), intent(in) :: self
+      integer, intent(in) :: edge, node
+      logical :: belongs
+
+      belongs = any(self%edges(:, edge) == node)
+      if (belongs .or. self%element(edge) == 0) return
+      if (self%leaving(node) > 0) belongs = self%element(self%leaving(node)) == self%element(edge)
+      if (self%arriving(node) > 0) belongs = belongs .or. &
+            self%element(self%arriving(node)) == self%element(edge)
+   end function belongs_to
+
+   !> True if an edge follows or precedes one with the node, at once or after edges of no more than
+   !> a length.
+   pure function is_next_to(self, x, edge, node, length) result(is)
+      type(target_type), intent(in) :: self
+      real(wp), intent(in) :: x(:, :)            !! (2 or 3, n_nodes)
+      integer, intent(in) :: edge, node
+      real(wp), intent(in) :: length
+      logical :: is
+
+      is = .false.
+      if (self%leaving(node) + self%arriving(node) == 0) return
+      is = is_along(self%next) .or. is_along(self%previous)
+
+   contains
+
+      pure function is_along(neighbour) result(found)
+         integer, intent(in) :: neighbour(:)
+         logical :: found
+         integer :: other
+         real(wp) :: walked
+
+         found = .false.
+         walked = 0.0_wp
+         other = neighbour(edge)
+         do while (other > 0 .and. other /= edge .and. walked <= length)
+            associate (nodes => self%edges(:, other))
+               found = any(nodes == node)
+               if (found) return
+               walked = walked + norm2(x(1:2, nodes(2)) - x(1:2, nodes(1)))
+            end associate
+            other = neighbour(other)
+         end do
+      end function is_along
+
+   end function is_next_to
 
    !> True if nodes cannot come closer to the surface than a reach during a step: the boxes of both
    !> sets of positions do not meet. Needs no update_target.

@@ -228,6 +228,27 @@ def check_sliding_off(checks):
             checks.at_most(np.mean(frames(run, 'U')[-1, deck.first['top'][0]:, 1]), -0.2, f'{name}: falls')
 
 
+def check_closing_ring(checks):
+    """The ends of an open ring are thrown at each other: one surface that touches itself."""
+    for layers in (1, 2, 4):
+        for friction in (None, 0.3):
+            deck = Deck().body('c', arch(16, layers, 4, 0.8, 1.0, (350.0, 10.0)), 2e3, 0.3)
+            deck.surface('S', *[('c', side) for side in (1, 2, 3, 4)]).pair('S', 'S', friction=friction)
+            for end, speed in ((1, -6.0), (0, 5.0)):
+                for k in deck.mesh['c'].at(s=end):
+                    deck.add(f'*INITIAL CONDITIONS, TYPE=VELOCITY\n{deck.node("c", k)}, 2, {speed!r}')
+            deck.add('*ELEMENT GROUP, ELSET=c, SCHEME=IMPLICIT, MASS=LUMPED')
+            run = run_deck(deck.text(0.002, 1.0))
+            name = f'closing ring of {layers} layers, friction {friction}'
+            v, mass, total = frames(run, 'V')[:, :, :2], lumped(deck), run['energy/total']
+            momentum = np.einsum('n,fni->fi', mass, v)
+            size = np.max(np.einsum('n,fni->f', mass, np.abs(v)))
+            checks.at_most(np.max(np.abs(momentum - momentum[0])) / size, 1e-11, f'{name}: momentum')
+            checks.at_most(np.max(total) / total[0] - 1.0, 1e-6, f'{name}: energy above the first')
+            checks.at_least(run['energy/impact_loss'][-1] / total[0], 0.01, f'{name}: energy lost in impacts')
+            checks.at_least(np.nanmin(run['history/contact_S-S/CDIS']), -1e-8, f'{name}: smallest gap')
+
+
 checks = Checks()
 check_loops(checks)
 check_kinks(checks)
@@ -237,4 +258,5 @@ check_oblique(checks)
 check_belt(checks)
 check_two_bodies(checks)
 check_sliding_off(checks)
+check_closing_ring(checks)
 checks.finish()
