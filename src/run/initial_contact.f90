@@ -16,7 +16,8 @@ module initial_contact
    implicit none
    private
 
-   public :: adjustment_type, build_rows, adjust_pairs, adjustment_remark, check_overlaps, check_jump
+   public :: adjustment_type, build_rows, adjust_pairs, adjustment_remark
+   public :: check_overlaps, check_jump
 
    !> What ADJUST did to one pair.
    type :: adjustment_type
