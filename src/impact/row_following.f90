@@ -4,7 +4,8 @@ module row_following
    use kinds, only: wp
    use errors, only: error_type
    use motion_state, only: state_type
-   use constraint_rows, only: row_gaps, row_rates, row_curvature, rate_size, law_penalty, law_overlap
+   use constraint_rows, only: row_gaps, row_rates, row_curvature, rate_size, law_penalty, &
+         law_overlap
    use row_placement, only: place_rows
    use impact_scene, only: scene_type, contact_motion_type, event_type, record_event, &
          event_release, rate_tolerance
