@@ -313,8 +313,8 @@ contains
             merge(gaps, 0.0_wp, list%rows%pair == list%rows(worst)%pair), limit), advice)
    end subroutine check_overlaps
 
-   !> So are nodes that the prescribed displacements of a dynamic step, which act at once, put inside
-   !> another body.
+   !> So are nodes that the prescribed displacements of a dynamic step, which act at once, put
+   !> inside another body.
    subroutine check_jump(model, list, scene, before, start, error)
       type(model_type), intent(in) :: model
       type(contact_pair_list_type), intent(in) :: list
