@@ -67,8 +67,8 @@ contains
       end select
    end subroutine make_impact_method
 
-   !> What a method cannot do in a step: the fictitious force of the end of an explicit step does not
-   !> move that end; the pure method leaves an overlap that a much shorter step would throw back.
+   !> What a method cannot do in a step: the fictitious force of the end of an explicit step does
+   !> not move that end; the pure method leaves an overlap that a much shorter step throws back.
    subroutine check_method(model, settings, step, beta, error)
       type(model_type), intent(in) :: model
       type(impact_settings_type), intent(in) :: settings

@@ -105,8 +105,8 @@ contains
             motion%motion, reach(scene, motion, dt))
    end subroutine rows_here
 
-   !> How far rows look for partners: what may be gone in the step, how deep springs are in, and what
-   !> fictitious forces of earlier steps, which may have been longer, have left.
+   !> How far rows look for partners: what may be gone in the step, how deep springs are in, and
+   !> what fictitious forces of earlier steps, which may have been longer, have left.
    pure function reach(scene, motion, dt) result(distance)
       type(scene_type), intent(in) :: scene
       type(contact_motion_type), intent(in) :: motion

@@ -10,13 +10,14 @@ module initial_contact
    use contact_pairs, only: contact_pair_list_type, find_contact_rows
    use contact_geometry, only: new_contact_geometry, allow_gaps
    use motion_state, only: state_type
-   use constraint_rows, only: row_gaps, gap_size
+   use constraint_rows, only: law_penalty, law_overlap, row_gaps, gap_size
    use row_placement, only: new_rows, place_rows
    use impact_scene, only: scene_type, merge_gap_tolerance
    implicit none
    private
 
-   public :: adjustment_type, build_rows, adjust_pairs, adjustment_remark, check_overlaps
+   public :: adjustment_type, build_rows, adjust_pairs, adjustment_remark
+   public :: check_overlaps, check_jump
 
    !> What ADJUST did to one pair.
    type :: adjustment_type
@@ -38,6 +39,9 @@ module initial_contact
    real(wp), parameter :: weighted_share = 0.05_wp
    !> The error of overlapping nodes names so many.
    integer, parameter :: most_named = 5
+
+   !> Prescribed displacements that change by no more than this part of the size go on smoothly.
+   real(wp), parameter :: jump_tolerance = 1.0e-10_wp
 
 contains
 
@@ -284,12 +288,14 @@ contains
    end function adjustment_remark
 
    !> Nodes that overlap at the start are an error, which names the worst of the worst pair.
-   subroutine check_overlaps(model, list, scene, start, error)
+   subroutine check_overlaps(model, list, scene, start, error, cure)
       type(model_type), intent(in) :: model
       type(contact_pair_list_type), intent(in) :: list
       type(scene_type), intent(inout) :: scene
       type(state_type), intent(in) :: start
       type(error_type), allocatable, intent(out) :: error
+      character(len=*), intent(in), optional :: cure   !! instead of the usual one
+      character(len=:), allocatable :: advice
       real(wp) :: gaps(scene%rows%n), limit
       integer :: worst
 
@@ -300,11 +306,30 @@ contains
       where (gaps >= -weighted_share*scene%rows%weight) gaps = max(0.0_wp, gaps)
       worst = minloc(gaps, dim=1)
       if (gaps(worst) >= -limit) return
+      advice = overlap_cure(model, list%rows(worst)%model_pair)
+      if (present(cure)) advice = cure
       call fail_at(error, model%source, list%rows(worst)%place, &
             overlap_text(list, scene, &
-            merge(gaps, 0.0_wp, list%rows%pair == list%rows(worst)%pair), limit), &
-            overlap_cure(model, list%rows(worst)%model_pair))
+            merge(gaps, 0.0_wp, list%rows%pair == list%rows(worst)%pair), limit), advice)
    end subroutine check_overlaps
+
+   !> So are nodes that the prescribed displacements of a dynamic step, which act at once, put
+   !> inside another body.
+   subroutine check_jump(model, list, scene, before, start, error)
+      type(model_type), intent(in) :: model
+      type(contact_pair_list_type), intent(in) :: list
+      type(scene_type), intent(inout) :: scene
+      real(wp), intent(in) :: before(:)          !! (n_freedoms) displacements without them
+      type(state_type), intent(in) :: start      !! with them
+      type(error_type), allocatable, intent(out) :: error
+
+      ! what earlier steps have left of overlap is no error where overlap makes the force
+      if (start%t > 0.0_wp .and. any(scene%rows%law == law_penalty .or. &
+            scene%rows%law == law_overlap)) return
+      if (.not. any(abs(start%d - before) > jump_tolerance*scene%geometry%size)) return
+      call check_overlaps(model, list, scene, start, error, 'a displacement that *BOUNDARY ' &
+            //'prescribes in a dynamic step acts at once: let it grow by an *AMPLITUDE')
+   end subroutine check_jump
 
    function overlap_text(list, scene, gaps, limit) result(cause)
       type(contact_pair_list_type), intent(in) :: list

@@ -19,7 +19,7 @@ module scene_setup
    use contact_pairs, only: contact_pair_list_type
    use impact_scene, only: scene_type, contact_motion_type, new_contact_motion
    use initial_contact, only: adjustment_type, build_rows, adjust_pairs, adjustment_remark, &
-         check_overlaps
+         check_overlaps, check_jump
    use impact_method, only: impact_method_type
    use automatic_groups, only: partition_type, resolve_automatic
    use impact_factory, only: make_impact_method, check_method
@@ -204,6 +204,7 @@ contains
       type(simulation_type), intent(inout) :: self
       integer, intent(in) :: i_step
       type(error_type), allocatable, intent(out) :: error
+      real(wp), allocatable :: before(:)
       real(wp) :: t
 
       t = self%motion%motion%t
@@ -232,7 +233,10 @@ contains
          if (all(self%model%steps(:i_step - 1)%procedure == procedure_static)) call put_values( &
                system%structure, self%model%initial_velocities, self%motion%motion%v)
          call put_values(system%structure, step%initial_velocities, self%motion%motion%v)
+         before = self%motion%motion%d
          call impose(system, self%motion%motion)
+         call check_jump(self%model, self%contact, self%scene, before, self%motion%motion, error)
+         if (allocated(error)) return
          call check_critical(self, step, error)
          if (allocated(error)) return
          call check_method(self%model, self%scene%settings, step, system%newmark%beta, error)
