@@ -167,6 +167,7 @@ contains
       associate (rigid => model%rigid_surfaces(pair%rigid_target))
          if (rigid%kind == rigid_plane) direction = abs(rigid%normal) > 0.0_wp
       end associate
+      if (pair%interaction == 0) return
       if (model%interactions(pair%interaction)%friction > 0.0_wp) direction(:2) = .true.
    end function contact_directions
 
