@@ -11,7 +11,8 @@ module initial_contact
    use contact_geometry, only: new_contact_geometry, allow_gaps
    use motion_state, only: state_type
    use constraint_rows, only: row_gaps, gap_size
-   use row_placement, only: new_rows, place_rows
+   use row_placement, only: new_rows, place_rows, nodal_displacements
+   use deep_overlap, only: find_deep_nodes
    use impact_scene, only: scene_type, merge_gap_tolerance
    implicit none
    private
@@ -299,12 +300,35 @@ contains
             merge_gap_tolerance*scene%geometry%size, closed_tolerance*start_size(model, scene))
       where (gaps >= -weighted_share*scene%rows%weight) gaps = max(0.0_wp, gaps)
       worst = minloc(gaps, dim=1)
-      if (gaps(worst) >= -limit) return
+      if (gaps(worst) >= -limit) then
+         call check_depths(model, list, scene, start, error)
+         return
+      end if
       call fail_at(error, model%source, list%rows(worst)%place, &
             overlap_text(list, scene, &
             merge(gaps, 0.0_wp, list%rows%pair == list%rows(worst)%pair), limit), &
             overlap_cure(model, list%rows(worst)%model_pair))
    end subroutine check_overlaps
+
+   !> So are nodes inside their partner's body that are far from all of its sides.
+   subroutine check_depths(model, list, scene, start, error)
+      type(model_type), intent(in) :: model
+      type(contact_pair_list_type), intent(in) :: list
+      type(scene_type), intent(in) :: scene
+      type(state_type), intent(in) :: start
+      type(error_type), allocatable, intent(out) :: error
+      logical :: deep(scene%rows%n)
+      integer :: row
+
+      call find_deep_nodes(model, list%rows, model%nodes%x(:, :model%nodes%n) &
+            + nodal_displacements(scene%system%structure%map, start%d), deep)
+      if (.not. any(deep)) return
+      row = findloc(deep, .true., dim=1)
+      call fail_at(error, model%source, list%rows(row)%place, 'node ' &
+            //to_text(scene%rows%node_id(row))//' of '//trim(list%names(list%rows(row)%pair)) &
+            //' lies deep inside its contact partner at the start', &
+            'move the body, or give it an initial displacement without overlap')
+   end subroutine check_depths
 
    function overlap_text(list, scene, gaps, limit) result(cause)
       type(contact_pair_list_type), intent(in) :: list
