@@ -11,7 +11,8 @@ module initial_contact
    use contact_geometry, only: new_contact_geometry, allow_gaps
    use motion_state, only: state_type
    use constraint_rows, only: law_penalty, law_overlap, row_gaps, gap_size
-   use row_placement, only: new_rows, place_rows
+   use row_placement, only: new_rows, place_rows, nodal_displacements
+   use deep_overlap, only: find_deep_nodes
    use impact_scene, only: scene_type, merge_gap_tolerance
    implicit none
    private
@@ -305,7 +306,10 @@ contains
             merge_gap_tolerance*scene%geometry%size, closed_tolerance*start_size(model, scene))
       where (gaps >= -weighted_share*scene%rows%weight) gaps = max(0.0_wp, gaps)
       worst = minloc(gaps, dim=1)
-      if (gaps(worst) >= -limit) return
+      if (gaps(worst) >= -limit) then
+         if (.not. present(cure)) call check_depths(model, list, scene, start, error)
+         return
+      end if
       advice = overlap_cure(model, list%rows(worst)%model_pair)
       if (present(cure)) advice = cure
       call fail_at(error, model%source, list%rows(worst)%place, &
@@ -313,23 +317,12 @@ contains
             merge(gaps, 0.0_wp, list%rows%pair == list%rows(worst)%pair), limit), advice)
    end subroutine check_overlaps
 
-   !> So are nodes that the prescribed displacements of a dynamic step, which act at once, put
-   !> inside another body.
-   subroutine check_jump(model, list, scene, before, start, error)
-      type(model_type), intent(in) :: model
-      type(contact_pair_list_type), intent(in) :: list
-      type(scene_type), intent(inout) :: scene
-      real(wp), intent(in) :: before(:)          !! (n_freedoms) displacements without them
-      type(state_type), intent(in) :: start      !! with them
-      type(error_type), allocatable, intent(out) :: error
-
-      ! what earlier steps have left of overlap is no error where overlap makes the force
-      if (start%t > 0.0_wp .and. any(scene%rows%law == law_penalty .or. &
-            scene%rows%law == law_overlap)) return
-      if (.not. any(abs(start%d - before) > jump_tolerance*scene%geometry%size)) return
-      call check_overlaps(model, list, scene, start, error, 'a displacement that *BOUNDARY ' &
-            //'prescribes in a dynamic step acts at once: let it grow by an *AMPLITUDE')
-   end subroutine check_jump
+      if (gaps(worst) >= -limit) then
+         if (.not. present(cure)) call check_depths(model, list, scene, start, error)
+         return
+      end if
+      advice = overlap_cure(model, list%rows(worst)%model_pair)
+      if (present(cure)) advice = cure
 
    function overlap_text(list, scene, gaps, limit) result(cause)
       type(contact_pair_list_type), intent(in) :: list
