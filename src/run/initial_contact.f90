@@ -317,12 +317,43 @@ contains
             merge(gaps, 0.0_wp, list%rows%pair == list%rows(worst)%pair), limit), advice)
    end subroutine check_overlaps
 
-      if (gaps(worst) >= -limit) then
-         if (.not. present(cure)) call check_depths(model, list, scene, start, error)
-         return
-      end if
-      advice = overlap_cure(model, list%rows(worst)%model_pair)
-      if (present(cure)) advice = cure
+   !> So are nodes inside their partner's body that are far from all of its sides.
+   subroutine check_depths(model, list, scene, start, error)
+      type(model_type), intent(in) :: model
+      type(contact_pair_list_type), intent(in) :: list
+      type(scene_type), intent(in) :: scene
+      type(state_type), intent(in) :: start
+      type(error_type), allocatable, intent(out) :: error
+      logical :: deep(scene%rows%n)
+      integer :: row
+
+      call find_deep_nodes(model, list%rows, model%nodes%x(:, :model%nodes%n) &
+            + nodal_displacements(scene%system%structure%map, start%d), deep)
+      if (.not. any(deep)) return
+      row = findloc(deep, .true., dim=1)
+      call fail_at(error, model%source, list%rows(row)%place, 'node ' &
+            //to_text(scene%rows%node_id(row))//' of '//trim(list%names(list%rows(row)%pair)) &
+            //' lies deep inside its contact partner at the start', &
+            'move the body, or give it an initial displacement without overlap')
+   end subroutine check_depths
+
+   !> So are nodes that the prescribed displacements of a dynamic step, which act at once, put
+   !> inside another body.
+   subroutine check_jump(model, list, scene, before, start, error)
+      type(model_type), intent(in) :: model
+      type(contact_pair_list_type), intent(in) :: list
+      type(scene_type), intent(inout) :: scene
+      real(wp), intent(in) :: before(:)          !! (n_freedoms) displacements without them
+      type(state_type), intent(in) :: start      !! with them
+      type(error_type), allocatable, intent(out) :: error
+
+      ! what earlier steps have left of overlap is no error where overlap makes the force
+      if (start%t > 0.0_wp .and. any(scene%rows%law == law_penalty .or. &
+            scene%rows%law == law_overlap)) return
+      if (.not. any(abs(start%d - before) > jump_tolerance*scene%geometry%size)) return
+      call check_overlaps(model, list, scene, start, error, 'a displacement that *BOUNDARY ' &
+            //'prescribes in a dynamic step acts at once: let it grow by an *AMPLITUDE')
+   end subroutine check_jump
 
    function overlap_text(list, scene, gaps, limit) result(cause)
       type(contact_pair_list_type), intent(in) :: list
