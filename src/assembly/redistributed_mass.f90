@@ -11,6 +11,7 @@
 !> mass.
 module redistributed_mass
    use kinds, only: wp
+   use disjoint_sets, only: join, top_of
    use errors, only: error_type
    use text, only: to_text
    use places, only: fail_at
@@ -187,13 +188,15 @@ contains
       do g = 1, size(groups)
          if (.not. has_mass(groups(g))) cycle
          do e = 1, size(groups(g)%member)
-            call join(parent, groups(g)%ien(:, e))
+            do i = 2, size(groups(g)%ien, 1)
+               call join(parent, groups(g)%ien(i - 1, e), groups(g)%ien(i, e))
+            end do
          end do
       end do
       n = 0
       body_of = 0
       do i = 1, size(contact)
-         parent(i) = root(parent, i)
+         parent(i) = top_of(parent, i)
          if (.not. contact(i) .or. body_of(parent(i)) > 0) cycle
          n = n + 1
          body_of(parent(i)) = n
@@ -238,34 +241,6 @@ contains
       axial = .false.
       if (is_solid_kind(kind)) axial = solid_plane(kind) == axisymmetric
    end function is_axial
-
-   !> Makes the nodes of an element one tree.
-   pure subroutine join(parent, nodes)
-      integer, intent(inout) :: parent(:)
-      integer, intent(in) :: nodes(:)
-      integer :: i, top, node, next
-
-      top = root(parent, nodes(1))
-      do i = 2, size(nodes)
-         node = nodes(i)
-         do
-            next = parent(node)
-            parent(node) = top
-            if (next == node) exit
-            node = next
-         end do
-      end do
-   end subroutine join
-
-   pure function root(parent, node) result(top)
-      integer, intent(in) :: parent(:), node
-      integer :: top
-
-      top = node
-      do while (parent(top) /= top)
-         top = parent(top)
-      end do
-   end function root
 
    subroutine restore_body(groups, model, body, error)
       type(group_type), intent(inout) :: groups(:)

@@ -5,13 +5,13 @@ module constraint_rows
    use histories, only: amplitude_type
    use amplitude_value, only: amplitude_at, amplitude_slope
    use motion_state, only: state_type
-   use row_matrix, only: row_matrix_type, multiply, multiply_absolute, add_transposed
+   use row_matrix, only: row_matrix_type, multiply, multiply_absolute, add_transposed, full_row
    implicit none
    private
 
    public :: rows_type, row_gaps, row_rates, row_accelerations, row_forces, row_vector
    public :: row_curvature, slip_rates, slip_products, slip_vector, contact_forces
-   public :: slip_increments, wall_work, may_hit
+   public :: slip_increments, wall_work, may_hit, sticks
    public :: gap_size, rate_size, acceleration_size, wall_rates
    public :: law_motion, law_closed, law_penalty, law_overlap
 
@@ -20,6 +20,9 @@ module constraint_rows
    integer, parameter :: law_closed = 1      !! gap >= 0, force >= 0 at the end of the step
    integer, parameter :: law_penalty = 2     !! stiffness times overlap at the end of the step
    integer, parameter :: law_overlap = 3     !! the fictitious force
+
+   !> A friction force within this part of its limit slips.
+   real(wp), parameter :: slip_tolerance = 1.0e-9_wp
 
    !> A row that faces nothing has this gap.
    real(wp), parameter, public :: far_gap = 1.0e30_wp
@@ -65,6 +68,16 @@ contains
       may = self%law == law_motion .or. (self%law == law_closed .and. .not. self%massless)
       may = may .and. self%facing
    end function may_hit
+
+   !> Rows pressed with friction forces below their limits.
+   pure function sticks(self, lambda, tau) result(stuck)
+      type(rows_type), intent(in) :: self
+      real(wp), intent(in) :: lambda(:), tau(:)  !! (n)
+      logical :: stuck(self%n)
+
+      stuck = lambda > 0.0_wp .and. self%friction > 0.0_wp .and. &
+            abs(tau) < self%friction*lambda*(1.0_wp - slip_tolerance)
+   end function sticks
 
    !> Gaps g = G d + g0 + c(t).
    pure function row_gaps(self, state) result(gaps)
@@ -113,13 +126,9 @@ contains
       type(rows_type), intent(in) :: self
       type(state_type), intent(in) :: state
       real(wp) :: rates(self%n)
-      integer :: i
 
-      rates = multiply(self%along_tangent, state%v)
-      do i = 1, self%n
-         if (self%amplitude(i) > 0) rates(i) = rates(i) + self%sliding_motion(i) &
-               *amplitude_slope(self%amplitudes(self%amplitude(i)), state%t)
-      end do
+      rates = multiply(self%along_tangent, state%v) &
+            + wall_speeds(self, self%sliding_motion, state%t)
    end function slip_rates
 
    !> T u of all rows.
@@ -176,14 +185,23 @@ contains
       type(rows_type), intent(in) :: self
       real(wp), intent(in) :: t
       real(wp) :: rates(self%n)
+
+      rates = wall_speeds(self, self%motion, t)
+   end function wall_rates
+
+   pure function wall_speeds(self, motion, t) result(speeds)
+      type(rows_type), intent(in) :: self
+      real(wp), intent(in) :: motion(:)          !! (n) position at amplitude 1
+      real(wp), intent(in) :: t
+      real(wp) :: speeds(self%n)
       integer :: i
 
-      rates = 0.0_wp
+      speeds = 0.0_wp
       do i = 1, self%n
          if (self%amplitude(i) == 0) cycle
-         rates(i) = self%motion(i)*amplitude_slope(self%amplitudes(self%amplitude(i)), t)
+         speeds(i) = motion(i)*amplitude_slope(self%amplitudes(self%amplitude(i)), t)
       end do
-   end function wall_rates
+   end function wall_speeds
 
    !> Gt lambda: normal contact forces (or impulses) on freedoms.
    pure function row_forces(self, lambda, n_freedoms) result(force)
@@ -213,12 +231,7 @@ contains
       integer, intent(in) :: i, n_freedoms
       real(wp) :: force(n_freedoms)
 
-      force = 0.0_wp
-      associate (g => self%along_normal)
-         associate (from => g%first(i), to => g%first(i + 1) - 1)
-            force(g%freedom(from:to)) = g%coefficient(from:to)
-         end associate
-      end associate
+      force = full_row(self%along_normal, i, n_freedoms)
    end function row_vector
 
    !> Row i of T as a vector of forces.
@@ -227,12 +240,7 @@ contains
       integer, intent(in) :: i, n_freedoms
       real(wp) :: force(n_freedoms)
 
-      force = 0.0_wp
-      associate (t => self%along_tangent)
-         associate (from => t%first(i), to => t%first(i + 1) - 1)
-            force(t%freedom(from:to)) = t%coefficient(from:to)
-         end associate
-      end associate
+      force = full_row(self%along_tangent, i, n_freedoms)
    end function slip_vector
 
    !> Size of the numbers that gaps are differences of: what round-off is relative to.

@@ -13,7 +13,8 @@ module contact_impulses
    use energy_ledger, only: record_impact, record_friction
    use reactions, only: impulse_reactions
    use constraint_rows, only: row_gaps, row_rates, row_accelerations, row_curvature, slip_rates, &
-         slip_products, rate_size, gap_size, wall_rates, contact_forces, law_penalty
+         slip_products, rate_size, gap_size, wall_rates, contact_forces, sticks, &
+         law_penalty
    use impact_scene, only: scene_type, contact_motion_type, note_contact_force, gap_tolerance
    use row_compliance, only: compliance_type, mass_compliance, join_rates, split_forces
    use rough_rows, only: solve_rows
@@ -32,8 +33,6 @@ module contact_impulses
    !> One of more than this part of the size has, and is not closed: that would move bodies apart
    !> that did not hit, and give them energy.
    real(wp), parameter :: largest_shift = 1.0e-4_wp
-   !> A friction force within this part of its limit slips.
-   real(wp), parameter :: slip_tolerance = 1.0e-9_wp
 
 contains
 
@@ -143,8 +142,7 @@ contains
          call split_forces(compliance, forces, motion%lambda, motion%tau)
          motion%motion%a = motion%motion%a + matmul(compliance%x, forces)
       end if
-      motion%sticking = held .and. scene%rows%friction > 0.0_wp .and. .not. &
-            abs(motion%tau) >= scene%rows%friction*motion%lambda*(1.0_wp - slip_tolerance)
+      motion%sticking = held .and. sticks(scene%rows, motion%lambda, motion%tau)
       call note_contact_force(scene, motion)
    end subroutine add_holding_forces
 

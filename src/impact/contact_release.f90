@@ -3,11 +3,9 @@
 module contact_release
    use kinds, only: wp
    use errors, only: error_type
-   use constraint_rows, only: row_rates, row_accelerations, row_curvature, gap_size, rate_size, &
-         acceleration_size
+   use constraint_rows, only: row_rates, gap_size, rate_size
    use impact_scene, only: scene_type, contact_motion_type, event_type, record_event, &
-         event_release, gap_tolerance, rate_tolerance, acceleration_tolerance, &
-         merge_time_tolerance
+         opening_rows, event_release, gap_tolerance, rate_tolerance, merge_time_tolerance
    use constrained_step, only: advance_smoothly
    use contact_impulses, only: restart_acceleration
    use impact_time, only: span_type
@@ -63,10 +61,7 @@ contains
          call advance_smoothly(scene, motion, span%dt, span%beta, next, error)
       end if
       if (allocated(error) .or. .not. any(motion%touching)) return
-      opening = motion%touching .and. .not. progress%stubborn .and. &
-            .not. next%lambda > 0.0_wp .and. row_accelerations(scene%rows, next%motion%a) &
-            + row_curvature(scene%rows, next%motion) > acceleration_tolerance &
-            *acceleration_size(scene%rows, next%motion%a)
+      opening = opening_rows(scene, motion, next) .and. .not. progress%stubborn
       span%held = motion%touching .and. .not. opening
       if (progress%at_limit) then
          release = opening

@@ -8,8 +8,7 @@ module fictitious_force
          acceleration_size
    use impact_scene, only: scene_type, contact_motion_type, event_type, record_event, accept_span, &
          capture_speeds, event_impact, event_capture, event_release, event_contact, &
-         rate_tolerance, &
-         acceleration_tolerance
+         let_go, rate_tolerance, acceleration_tolerance
    use impact_method, only: impact_method_type
    use contact_impulses, only: restart_acceleration, set_rates
    use row_following, only: rows_ahead, rows_here
@@ -158,19 +157,12 @@ contains
       type(scene_type), intent(inout) :: scene
       type(contact_motion_type), intent(inout) :: motion
       logical :: open(scene%rows%n)
-      real(wp) :: rates(scene%rows%n)
-      integer :: i
 
       if (.not. any(motion%touching)) return
       open = motion%touching .and. .not. motion%lambda > 0.0_wp .and. &
             row_accelerations(scene%rows, motion%motion%a) > acceleration_tolerance &
             *acceleration_size(scene%rows, motion%motion%a)
-      rates = row_rates(scene%rows, motion%motion)
-      do i = 1, scene%rows%n
-         if (open(i)) call record_event(scene, event_type(motion%motion%t, event_release, i, &
-               rates(i), rates(i), 0.0_wp, scene%system%newmark%beta))
-      end do
-      motion%touching = motion%touching .and. .not. open
+      call let_go(scene, motion, open)
    end subroutine release_open
 
 end module fictitious_force

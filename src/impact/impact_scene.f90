@@ -8,15 +8,15 @@ module impact_scene
    use energy_ledger, only: ledger_type, record_span, take_back_damping, record_impact, &
          record_friction, record_springs
    use contact_geometry, only: contact_geometry_type
-   use constraint_rows, only: rows_type, row_accelerations, contact_forces, slip_increments, &
-         wall_work, law_penalty
+   use constraint_rows, only: rows_type, row_rates, row_accelerations, row_curvature, &
+         acceleration_size, contact_forces, slip_increments, wall_work, law_penalty
    implicit none
    private
 
    public :: scene_type, contact_motion_type, event_type, impact_settings_type
    public :: event_impact, event_capture, event_release, event_contact, event_limit
    public :: new_contact_motion, record_event, record_residual, accept_span, capture_speeds
-   public :: note_contact_force
+   public :: note_contact_force, opening_rows, let_go
 
    integer, parameter :: event_impact = 1     !! velocity jump
    integer, parameter :: event_capture = 2    !! a row begins sustained contact
@@ -207,5 +207,33 @@ contains
             *max(1.0e-3_wp, 1.0_wp - scene%rows%restitution)
       where (scene%rows%capture >= 0.0_wp) limits = scene%rows%capture
    end function capture_speeds
+
+   !> Touching rows that nothing presses and that open.
+   pure function opening_rows(scene, from, to) result(opening)
+      type(scene_type), intent(in) :: scene
+      type(contact_motion_type), intent(in) :: from, to
+      logical :: opening(scene%rows%n)
+
+      opening = from%touching .and. .not. to%lambda > 0.0_wp .and. &
+            row_accelerations(scene%rows, to%motion%a) + row_curvature(scene%rows, to%motion) > &
+            acceleration_tolerance*acceleration_size(scene%rows, to%motion%a)
+   end function opening_rows
+
+   !> Rows touch no more.
+   subroutine let_go(scene, motion, opening)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(inout) :: motion
+      logical, intent(in) :: opening(:)          !! (n_rows)
+      real(wp) :: rates(scene%rows%n)
+      integer :: i
+
+      if (.not. any(opening)) return
+      rates = row_rates(scene%rows, motion%motion)
+      motion%touching = motion%touching .and. .not. opening
+      do i = 1, scene%rows%n
+         if (opening(i)) call record_event(scene, event_type(motion%motion%t, event_release, i, &
+               rates(i), rates(i), 0.0_wp, scene%system%newmark%beta))
+      end do
+   end subroutine let_go
 
 end module impact_scene

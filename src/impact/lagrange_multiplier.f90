@@ -33,11 +33,10 @@ module lagrange_multiplier
    use motion_state, only: state_type
    use equation_of_motion, only: predict_motion
    use energy_ledger, only: record_impact
-   use constraint_rows, only: row_gaps, row_rates, row_accelerations, row_curvature, slip_rates, &
-         gap_size, rate_size, acceleration_size, may_hit
+   use constraint_rows, only: row_gaps, row_rates, slip_rates, gap_size, rate_size, may_hit
    use impact_scene, only: scene_type, contact_motion_type, event_type, record_event, accept_span, &
-         note_contact_force, event_impact, event_capture, event_release, gap_tolerance, &
-         rate_tolerance, acceleration_tolerance
+         note_contact_force, opening_rows, let_go, event_impact, event_capture, gap_tolerance, &
+         rate_tolerance
    use impact_method, only: impact_method_type
    use row_compliance, only: compliance_type, mass_compliance, join_rates, split_forces
    use rough_rows, only: solve_rows
@@ -173,34 +172,6 @@ contains
       lambda(compliance%rows) = x
       motion = matmul(compliance%x, x)
    end subroutine solve_marked
-
-   !> Touching rows that nothing presses and that open.
-   pure function opening_rows(scene, from, to) result(opening)
-      type(scene_type), intent(in) :: scene
-      type(contact_motion_type), intent(in) :: from, to
-      logical :: opening(scene%rows%n)
-
-      opening = from%touching .and. .not. to%lambda > 0.0_wp .and. &
-            row_accelerations(scene%rows, to%motion%a) + row_curvature(scene%rows, to%motion) > &
-            acceleration_tolerance*acceleration_size(scene%rows, to%motion%a)
-   end function opening_rows
-
-   !> Rows touch no more.
-   subroutine let_go(scene, motion, opening)
-      type(scene_type), intent(inout) :: scene
-      type(contact_motion_type), intent(inout) :: motion
-      logical, intent(in) :: opening(:)          !! (n_rows)
-      real(wp) :: rates(scene%rows%n)
-      integer :: i
-
-      if (.not. any(opening)) return
-      rates = row_rates(scene%rows, motion%motion)
-      motion%touching = motion%touching .and. .not. opening
-      do i = 1, scene%rows%n
-         if (opening(i)) call record_event(scene, event_type(motion%motion%t, event_release, i, &
-               rates(i), rates(i), 0.0_wp, scene%system%newmark%beta))
-      end do
-   end subroutine let_go
 
    !> The impulses of a step in which rows have closed, and the motion after it.
    subroutine close_rows(scene, from, to, closed, dt, error)

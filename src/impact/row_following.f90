@@ -4,8 +4,8 @@ module row_following
    use kinds, only: wp
    use errors, only: error_type
    use motion_state, only: state_type
-   use constraint_rows, only: row_gaps, row_rates, row_curvature, rate_size, law_closed, &
-         law_penalty, law_overlap
+   use constraint_rows, only: rows_type, row_gaps, row_rates, row_curvature, rate_size, &
+         law_closed, law_penalty, law_overlap
    use row_placement, only: place_rows
    use impact_scene, only: scene_type, contact_motion_type, event_type, record_event, &
          event_release, rate_tolerance
@@ -77,6 +77,7 @@ contains
       real(wp), intent(in) :: dt
       real(wp), parameter :: part = 0.1_wp       !! of the step
       type(state_type) :: further
+      type(rows_type) :: here
       real(wp) :: rates(scene%rows%n)
       logical :: weighted(scene%rows%n)
 
@@ -84,14 +85,14 @@ contains
       weighted = scene%rows%weight > 0.0_wp
       if (.not. any(weighted)) return
       rates = row_rates(scene%rows, ahead)
+      here = scene%rows
       further = ahead
       further%d = ahead%d + part*dt*ahead%v
       call place_rows(scene%rows, scene%geometry, scene%system%structure%map, ahead, further, &
             reach(scene, motion, dt))
       where (weighted .and. scene%rows%facing) scene%curvature &
             = (row_rates(scene%rows, ahead) - rates)/(part*dt)
-      call place_rows(scene%rows, scene%geometry, scene%system%structure%map, motion%motion, &
-            ahead, reach(scene, motion, dt))
+      scene%rows = here
    end subroutine find_curvature
 
    !> Rows where the motion is.

@@ -5,7 +5,7 @@ module row_matrix
    private
 
    public :: row_matrix_type, new_row_matrix, start_row, add_entry
-   public :: multiply, multiply_absolute, add_transposed
+   public :: multiply, multiply_absolute, add_transposed, full_row
 
    !> Entries by rows.
    type :: row_matrix_type
@@ -82,6 +82,18 @@ contains
          end associate
       end do
    end function multiply_absolute
+
+   !> Row i over all freedoms.
+   pure function full_row(self, i, n_freedoms) result(row)
+      type(row_matrix_type), intent(in) :: self
+      integer, intent(in) :: i, n_freedoms
+      real(wp) :: row(n_freedoms)
+
+      row = 0.0_wp
+      associate (from => self%first(i), to => self%first(i + 1) - 1)
+         row(self%freedom(from:to)) = self%coefficient(from:to)
+      end associate
+   end function full_row
 
    !> Adds At x to a vector on freedoms.
    pure subroutine add_transposed(self, x, vector)

@@ -7,7 +7,7 @@ module step_contact
    use text, only: to_text
    use rough_rows, only: solve_rows
    use constraint_rows, only: row_gaps, row_accelerations, slip_products, slip_rates, &
-         slip_increments, gap_size, law_motion, law_closed, law_penalty, law_overlap
+         slip_increments, sticks, gap_size, law_motion, law_closed, law_penalty, law_overlap
    use impact_scene, only: scene_type, contact_motion_type, gap_tolerance
    use row_compliance, only: compliance_type, find_compliance, join_rates, split_forces
    implicit none
@@ -27,8 +27,6 @@ module step_contact
 
    !> Explicit steps (beta = 0) find penalty forces from the predictor: as with so small a beta.
    real(wp), parameter, public :: smallest_beta = 1.0e-12_wp
-   !> A friction force within this part of its limit slips.
-   real(wp), parameter :: slip_tolerance = 1.0e-9_wp
 
 contains
 
@@ -70,8 +68,7 @@ contains
          if (.not. any(overlapping)) exit
          closing = closing .or. overlapping
       end do
-      to%sticking = to%lambda > 0.0_wp .and. scene%rows%friction > 0.0_wp .and. &
-            abs(to%tau) < scene%rows%friction*to%lambda*(1.0_wp - slip_tolerance)
+      to%sticking = sticks(scene%rows, to%lambda, to%tau)
    end subroutine add_contact_forces
 
    !> Rows whose force follows from the gap at the end of the step; in a static step all do. The

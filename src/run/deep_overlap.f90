@@ -2,6 +2,7 @@
 !> near a node, does not see the overlap.
 module deep_overlap
    use kinds, only: wp
+   use disjoint_sets, only: join, top_of
    use model, only: model_type
    use element_sides, only: count_sides, side_nodes
    use edge_bins, only: edge_bins_type, find_in_box, new_bins
@@ -80,36 +81,9 @@ contains
          end do
       end do
       do e = 1, model%elements%n
-         body(e) = root_of(root, model%elements%nodes(model%elements%first(e)))
+         body(e) = top_of(root, model%elements%nodes(model%elements%first(e)))
       end do
    end subroutine find_bodies
-
-   pure subroutine join(root, a, b)
-      integer, intent(inout) :: root(:)
-      integer, intent(in) :: a, b
-      integer :: i, next, top
-
-      top = min(root_of(root, a), root_of(root, b))
-      root(root_of(root, a)) = top
-      root(root_of(root, b)) = top
-      ! short ways for those to come
-      i = b
-      do while (root(i) /= top)
-         next = root(i)
-         root(i) = top
-         i = next
-      end do
-   end subroutine join
-
-   pure function root_of(root, node) result(top)
-      integer, intent(in) :: root(:), node
-      integer :: top
-
-      top = node
-      do while (root(top) /= top)
-         top = root(top)
-      end do
-   end function root_of
 
    pure subroutine mark_bodies(body, elements, marked)
       integer, intent(in) :: body(:), elements(:)
