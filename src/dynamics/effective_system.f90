@@ -32,10 +32,12 @@ module effective_system
       integer(int64) :: clock = 0
       integer(int64), public :: n_factorizations = 0
       integer(int64), public :: n_solves = 0
+      integer(int64), public :: generation = 0    !! how often all matrices have been dropped
    contains
       procedure :: prepare
       procedure :: solve => solve_current
       procedure :: forget
+      procedure :: current_factors
    end type effective_system_type
 
 contains
@@ -52,12 +54,21 @@ contains
       class(effective_system_type), intent(inout) :: self
       integer :: i
 
+      self%generation = self%generation + 1
       self%has_parts = .false.
       do i = 1, n_slots
          self%slots(i)%factors = -1.0_wp
          self%slots(i)%last_use = -1
       end do
    end subroutine forget
+
+   !> c_m, c_c, c_k of the matrix last prepared.
+   pure function current_factors(self) result(factors)
+      class(effective_system_type), intent(in) :: self
+      real(wp) :: factors(3)
+
+      factors = self%slots(self%current)%factors
+   end function current_factors
 
    !> Makes c_m M + c_c C + c_k K the matrix that `solve` uses, from the store if it is there.
    !> A vanishing pivot is an error that names the node and freedom.

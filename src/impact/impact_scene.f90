@@ -7,6 +7,7 @@ module impact_scene
    use equation_of_motion, only: system_type
    use energy_ledger, only: ledger_type, record_span, take_back_damping, record_impact, &
          record_friction, record_springs
+   use compliance_store, only: compliance_store_type
    use contact_geometry, only: contact_geometry_type
    use constraint_rows, only: rows_type, row_rates, row_accelerations, row_curvature, &
          acceleration_size, contact_forces, slip_increments, wall_work, law_penalty
@@ -82,6 +83,7 @@ module impact_scene
       type(system_type) :: system
       type(rows_type) :: rows
       type(contact_geometry_type) :: geometry
+      type(compliance_store_type) :: compliances
       type(impact_settings_type) :: settings
       type(ledger_type) :: ledger
       type(event_type), allocatable :: events(:) !! grown by doubling
