@@ -14,7 +14,7 @@ module impact_scene
    implicit none
    private
 
-   public :: scene_type, contact_motion_type, event_type, impact_settings_type
+   public :: scene_type, contact_motion_type, event_type, impact_settings_type, anchor_type
    public :: event_impact, event_capture, event_release, event_contact, event_limit
    public :: new_contact_motion, record_event, record_residual, accept_span, capture_speeds
    public :: note_contact_force, opening_rows, let_go
@@ -76,7 +76,19 @@ module impact_scene
       real(wp) :: return_parameter = 0.3_wp      !! alpha
       logical :: direct = .false.
       logical :: locate_release = .true.
+      logical :: anchored = .false.              !! EVENTS=ANCHOR
    end type impact_settings_type
+
+   !> The step at hand of a motion whose steps begin at events, not at the deck's times: from one
+   !> state to another, after which something may happen.
+   type :: anchor_type
+      logical :: running = .false.               !! the step reaches beyond the deck's time
+      real(wp) :: dt = 0.0_wp                    !! every step's size
+      type(contact_motion_type) :: from, to
+      logical, allocatable :: held(:)            !! (n_rows) rows that touch to the end
+      logical, allocatable :: hit(:)             !! (n_rows) rows that are hit then
+      logical, allocatable :: release(:)         !! (n_rows) rows that let go then
+   end type anchor_type
 
    !> Everything an impact method needs besides the motion.
    type :: scene_type
@@ -86,6 +98,7 @@ module impact_scene
       type(compliance_store_type) :: compliances
       type(impact_settings_type) :: settings
       type(ledger_type) :: ledger
+      type(anchor_type) :: anchor
       type(event_type), allocatable :: events(:) !! grown by doubling
       integer :: n_events = 0                    !! since the last time they were fetched
       real(wp) :: dt = 0.0_wp                    !! of the increment at hand

@@ -133,7 +133,8 @@ contains
       call mass_compliance(scene, marked, compliance, error, .true.)
       if (allocated(error)) return
       lambda = 0.0_wp
-      call solve_marked(scene, compliance, gaps(compliance%rows)*2.0_wp/dt**2, lambda, force, solved)
+      call solve_marked(scene, compliance, gaps(compliance%rows)*2.0_wp/dt**2, lambda, force, &
+            solved)
       if (.not. solved) then
          call dependent_impulses(error)
          return
