@@ -3,7 +3,7 @@ module effective_system
    use kinds, only: wp, int64
    use errors, only: error_type, new_error, status_numerical
    use skyline_matrix, only: skyline_type, profile_type, profile_entries, combine
-   use skyline_ldlt, only: factorize, solve, ldlt_report_type
+   use skyline_ldlt, only: factorize, solve, solve_many, ldlt_report_type
    use structure, only: structure_type, freedom_name
    use effective_matrix, only: assemble_effective, assemble_sum
    implicit none
@@ -36,6 +36,7 @@ module effective_system
    contains
       procedure :: prepare
       procedure :: solve => solve_current
+      procedure :: solve_many => solve_columns
       procedure :: forget
       procedure :: current_factors
    end type effective_system_type
@@ -148,5 +149,14 @@ contains
       self%n_solves = self%n_solves + 1
       call solve(self%slots(self%current)%matrix, b)
    end subroutine solve_current
+
+   !> Solves for several right-hand sides with the matrix last prepared; b is overwritten.
+   subroutine solve_columns(self, b)
+      class(effective_system_type), intent(inout) :: self
+      real(wp), intent(inout), contiguous :: b(:, :)   !! (n_eq, right-hand sides)
+
+      self%n_solves = self%n_solves + size(b, 2)
+      call solve_many(self%slots(self%current)%matrix, b)
+   end subroutine solve_columns
 
 end module effective_system

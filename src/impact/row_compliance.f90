@@ -4,7 +4,7 @@
 module row_compliance
    use kinds, only: wp, int64
    use errors, only: error_type
-   use equation_of_motion, only: solve_motion, prepare_mass, solve_mass
+   use equation_of_motion, only: prepare_mass, solve_together
    use compliance_store, only: choose_shelf, missing_columns, keep_column, most_entries
    use constraint_rows, only: row_accelerations, slip_products, row_vector, slip_vector
    use impact_scene, only: scene_type
@@ -103,7 +103,7 @@ contains
       logical, intent(in) :: on_mass
       type(compliance_type), intent(inout) :: compliance
       integer, allocatable :: missing(:)
-      real(wp), dimension(scene%system%structure%map%n_freedoms) :: x
+      real(wp), allocatable :: x(:, :)
       integer :: j
 
       associate (matrices => scene%system%matrices)
@@ -112,10 +112,10 @@ contains
       end associate
       associate (shelf => scene%compliances%shelves(compliance%shelf), n => scene%rows%n)
          missing = missing_columns(shelf, pack(columns, columns > 0))
+         call column_motions(scene, missing, on_mass, x)
          do j = 1, size(missing)
-            x = column_motion(scene, missing(j), on_mass)
-            call keep_column(shelf, missing(j), x, &
-                  [row_accelerations(scene%rows, x), slip_products(scene%rows, x)])
+            call keep_column(shelf, missing(j), x(:, j), &
+                  [row_accelerations(scene%rows, x(:, j)), slip_products(scene%rows, x(:, j))])
          end do
          allocate (compliance%place(size(columns)))
          allocate (compliance%w(size(columns), size(columns)))
@@ -138,35 +138,38 @@ contains
       type(compliance_type), intent(inout) :: compliance
       integer :: j
 
-      allocate (compliance%x(scene%system%structure%map%n_freedoms, size(columns)))
+      call column_motions(scene, columns, on_mass, compliance%x)
       allocate (compliance%w(size(columns), size(columns)))
-      compliance%x = 0.0_wp
       compliance%w = 0.0_wp
       do j = 1, size(columns)
          if (columns(j) == 0) cycle
-         compliance%x(:, j) = column_motion(scene, columns(j), on_mass)
          compliance%w(:, j) = row_motion(scene, compliance, compliance%x(:, j))
       end do
    end subroutine solve_for_columns
 
-   !> Motion by a unit force along the normal of a row, or behind all rows along its tangent.
-   function column_motion(scene, column, on_mass) result(x)
+   !> Motions by unit forces along the normals of rows, or behind all rows along their tangents;
+   !> a column 0 is zero.
+   subroutine column_motions(scene, columns, on_mass, x)
       type(scene_type), intent(inout) :: scene
-      integer, intent(in) :: column
+      integer, intent(in) :: columns(:)
       logical, intent(in) :: on_mass
-      real(wp), dimension(scene%system%structure%map%n_freedoms) :: x
+      real(wp), allocatable, intent(out) :: x(:, :)   !! (n_freedoms, size(columns))
+      integer :: j, n_freedoms
 
-      if (column > scene%rows%n) then
-         x = slip_vector(scene%rows, column - scene%rows%n, size(x))
-      else
-         x = row_vector(scene%rows, column, size(x))
-      end if
-      if (on_mass) then
-         x = solve_mass(scene%system, x)
-      else
-         x = solve_motion(scene%system, x)
-      end if
-   end function column_motion
+      n_freedoms = scene%system%structure%map%n_freedoms
+      allocate (x(n_freedoms, size(columns)))
+      if (size(columns) == 0) return
+      do j = 1, size(columns)
+         if (columns(j) == 0) then
+            x(:, j) = 0.0_wp
+         else if (columns(j) > scene%rows%n) then
+            x(:, j) = slip_vector(scene%rows, columns(j) - scene%rows%n, n_freedoms)
+         else
+            x(:, j) = row_vector(scene%rows, columns(j), n_freedoms)
+         end if
+      end do
+      call solve_together(scene%system, on_mass, x)
+   end subroutine column_motions
 
    !> Motion by forces, or impulses, in the rows that take part.
    function pushed(scene, compliance, forces) result(motion)
