@@ -175,9 +175,11 @@ contains
 
       call get_word(card, 'SOLVER', solvers, choice, source, error)
       if (allocated(error)) return
-      if (choice > 0) step%solver = choice
+      if (choice == 0) return
+      step%solver = choice
+      step%solver_place = parameter_place(card, 'SOLVER')
       if (step%solver == solver_mumps .and. card%keyword == 'FREQUENCY') call fail_at(error, &
-            source, parameter_place(card, 'SOLVER'), 'frequencies are not found with MUMPS', &
+            source, step%solver_place, 'frequencies are not found with MUMPS', &
             cure='write SOLVER=SKYLINE, or remove SOLVER')
    end subroutine read_solver
 

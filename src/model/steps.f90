@@ -89,6 +89,7 @@ module steps
       type(request_type), allocatable :: requests(:)
       type(place_type) :: place                  !! of `*STEP`
       type(place_type) :: procedure_place        !! of `*DYNAMIC` or `*STATIC`
+      type(place_type) :: solver_place           !! of SOLVER, if given
       type(place_type) :: time_place             !! of the line with dt, T
    end type step_type
 

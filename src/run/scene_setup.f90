@@ -256,7 +256,7 @@ contains
       type(work_type) :: work
 
       if (step%solver == solver_mumps .and. .not. mumps_available()) then
-         call fail_at(error, self%model%source, step%procedure_place, &
+         call fail_at(error, self%model%source, step%solver_place, &
                'SOLVER=MUMPS, but this program was built without MUMPS', 'take SOLVER=AUTO or ' &
                //'SKYLINE, or build with the CMake option CAROM_MUMPS=ON')
          return
