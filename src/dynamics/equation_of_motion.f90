@@ -16,7 +16,8 @@ module equation_of_motion
 
    public :: system_type
    public :: predict_motion, fixed_force, residual, solve_motion, prepare_motion
-   public :: prepare_mass, solve_mass, solve_together, force_balance, impose, resisting_force, settle_massless
+   public :: prepare_mass, solve_mass, solve_together, force_balance, impose, resisting_force
+   public :: settle_massless
    public :: rigid_mass
 
    !> A structure under the loads and conditions of a step, with its matrices.
