@@ -10,9 +10,9 @@ module structure
    use needed_freedoms, only: find_needed_freedoms
    use redistributed_mass, only: redistribute_mass
    use dof_map, only: dof_map_type, new_dof_map
+   use element_chunks, only: new_chunks, add_forces_of_chunks
    use sparse_operator, only: sparse_operator_type, add_product
    use consistent_mass, only: build_consistent_mass
-   use element_chunks, only: new_chunks, add_forces_of_chunks
    implicit none
    private
 

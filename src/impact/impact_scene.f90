@@ -7,8 +7,8 @@ module impact_scene
    use equation_of_motion, only: system_type
    use energy_ledger, only: ledger_type, record_span, take_back_damping, record_impact, &
          record_friction, record_springs
-   use compliance_store, only: compliance_store_type
    use explicit_motion, only: explicit_motion_type
+   use compliance_store, only: compliance_store_type
    use contact_geometry, only: contact_geometry_type
    use constraint_rows, only: rows_type, row_rates, row_accelerations, row_curvature, &
          acceleration_size, contact_forces, slip_increments, wall_work, law_penalty
@@ -101,8 +101,8 @@ module impact_scene
       type(compliance_store_type) :: compliances
       type(impact_settings_type) :: settings
       type(ledger_type) :: ledger
-      type(anchor_type) :: anchor
       type(explicit_motion_type) :: explicit     !! of steps that are wholly explicit
+      type(anchor_type) :: anchor
       type(event_type), allocatable :: events(:) !! grown by doubling
       integer :: n_events = 0                    !! since the last time they were fetched
       real(wp) :: dt = 0.0_wp                    !! of the increment at hand
