@@ -6,7 +6,7 @@ module compliance_store
    implicit none
    private
 
-   public :: compliance_store_type, choose_shelf, missing_columns, keep_column
+   public :: compliance_store_type, choose_shelf, missing_columns, keep_column, add_columns
 
    integer, parameter :: n_shelves = 4
    !> Largest number of entries kept on one shelf.
@@ -90,6 +90,33 @@ contains
       shelf%x(:, shelf%n) = x
       shelf%w(:, shelf%n) = w
    end subroutine keep_column
+
+   !> The sum of some columns with factors: four at a time, for the sum has to go to memory and back.
+   pure subroutine add_columns(shelf, places, factors, total)
+      type(shelf_type), intent(in) :: shelf
+      integer, intent(in) :: places(:)
+      real(wp), intent(in) :: factors(:)
+      real(wp), intent(out) :: total(:)          !! (n_freedoms)
+      integer :: i, j, whole
+
+      total = 0.0_wp
+      whole = size(places) - modulo(size(places), 4)
+      associate (x => shelf%x)
+         do j = 1, whole, 4
+            associate (a => places(j), b => places(j + 1), c => places(j + 2), d => places(j + 3))
+               do i = 1, size(total)
+                  total(i) = total(i) + factors(j)*x(i, a) + factors(j + 1)*x(i, b) &
+                        + factors(j + 2)*x(i, c) + factors(j + 3)*x(i, d)
+               end do
+            end associate
+         end do
+         do j = whole + 1, size(places)
+            do i = 1, size(total)
+               total(i) = total(i) + factors(j)*x(i, places(j))
+            end do
+         end do
+      end associate
+   end subroutine add_columns
 
    !> Room for n columns, doubled where it is too small.
    pure subroutine make_room(a, m, n)

@@ -63,6 +63,8 @@ module impact_scene
       real(wp) :: rate_after = 0.0_wp
       real(wp) :: impulse = 0.0_wp
       real(wp) :: beta = 0.0_wp                  !! of the impact step
+      integer(int64) :: n_solves = 0             !! of the run up to then
+      integer(int64) :: n_factorizations = 0
    end type event_type
 
    !> What the deck says of the method.
@@ -147,7 +149,7 @@ contains
       scene%residuals(scene%n_residuals) = residual
    end subroutine record_residual
 
-   !> Notes an event.
+   !> Notes an event, and how much has been solved until then.
    pure subroutine record_event(scene, event)
       type(scene_type), intent(inout) :: scene
       type(event_type), intent(in) :: event
@@ -161,6 +163,8 @@ contains
       end if
       scene%n_events = scene%n_events + 1
       scene%events(scene%n_events) = event
+      scene%events(scene%n_events)%n_solves = scene%system%matrices%n_solves
+      scene%events(scene%n_events)%n_factorizations = scene%system%matrices%n_factorizations
    end subroutine record_event
 
    !> Keeps the contact forces that the acceleration holds.

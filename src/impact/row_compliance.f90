@@ -5,7 +5,8 @@ module row_compliance
    use kinds, only: wp, int64
    use errors, only: error_type
    use equation_of_motion, only: prepare_mass, solve_together
-   use compliance_store, only: choose_shelf, missing_columns, keep_column, most_entries
+   use compliance_store, only: choose_shelf, missing_columns, keep_column, add_columns, &
+         most_entries
    use constraint_rows, only: row_accelerations, slip_products, row_vector, slip_vector
    use impact_scene, only: scene_type
    implicit none
@@ -177,19 +178,20 @@ contains
       type(compliance_type), intent(in) :: compliance
       real(wp), intent(in) :: forces(:)          !! (n or 2 n)
       real(wp), dimension(scene%system%structure%map%n_freedoms) :: motion
-      integer :: j
+      integer :: pushing(size(forces)), n, j
 
       if (compliance%shelf == 0) then
          motion = matmul(compliance%x, forces)
          return
       end if
-      motion = 0.0_wp
-      associate (x => scene%compliances%shelves(compliance%shelf)%x)
-         do j = 1, size(forces)
-            if (compliance%place(j) == 0 .or. abs(forces(j)) <= 0.0_wp) cycle
-            motion = motion + forces(j)*x(:, compliance%place(j))
-         end do
-      end associate
+      n = 0
+      do j = 1, size(forces)
+         if (compliance%place(j) == 0 .or. abs(forces(j)) <= 0.0_wp) cycle
+         n = n + 1
+         pushing(n) = j
+      end do
+      call add_columns(scene%compliances%shelves(compliance%shelf), compliance%place(pushing(:n)), &
+            forces(pushing(:n)), motion)
    end function pushed
 
    !> The motions by unit forces in the rows that take part.
