@@ -228,6 +228,7 @@ contains
          call number_anew(self)
          call system%matrices%forget()
          call find_massless(system)
+         self%scene%explicit%ready = .false.
          call begin_loads(system%loads, system%structure, self%model, i_step, t)
          if (system%static) return
          ! the deck's initial velocities wait for the first dynamic step
