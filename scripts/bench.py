@@ -173,7 +173,7 @@ def all_cases(sizes, small):
 def measure_peers(bench, figures):
     """The other programs, each in a process of its own."""
     found = {}
-    limit = 25.0 if bench.quick else 300.0
+    limit = 40.0 if bench.quick else 300.0
     for script, name, _ in PEERS:
         if bench.late(5.0):
             found[script] = "no time left of --quick"

@@ -20,6 +20,6 @@ case " $* " in
    done
    ;;
 esac
-configure_and_build "$build" all -DCMAKE_BUILD_TYPE=Release -DCAROM_TESTS=ON
+configure_and_build "$build" carom_kernels -DCMAKE_BUILD_TYPE=Release -DCAROM_TESTS=ON
 cd "$root"
 exec "$python" -B scripts/bench.py --build "$build" "$@"
