@@ -2,7 +2,7 @@
 module effective_system
    use kinds, only: wp, int64
    use errors, only: error_type, new_error, status_numerical
-   use skyline_matrix, only: skyline_type, profile_type, profile_entries
+   use skyline_matrix, only: skyline_type, profile_type, profile_entries, combine
    use skyline_ldlt, only: factorize, solve, ldlt_report_type
    use structure, only: structure_type, freedom_name
    use effective_matrix, only: assemble_effective, assemble_sum
@@ -84,9 +84,7 @@ contains
          if (structure%is_linear .and. sum(factors(2:3)) > 0.0_wp .and. &
                profile_entries(profile) <= most_kept) then
             if (.not. self%has_parts) call keep_parts(self, structure, profile, d, history)
-            slot%matrix = self%parts(1)
-            slot%matrix%values = factors(1)*self%parts(1)%values &
-                  + factors(2)*self%parts(2)%values + factors(3)*self%parts(3)%values
+            call combine(slot%matrix, factors, self%parts)
          else
             call assemble_effective(structure, profile, d, history, factors, slot%matrix)
          end if
