@@ -11,11 +11,11 @@ THEORY = {
 }
 KEYS = {
     "skyline": {"factor": "factor_seconds_1t", "solve": "solve_seconds_1t",
-                "memory": "stored_entries"},
+                "memory": "stored_bytes"},
     "mumps": {"factor": "mumps_factor_seconds_1t", "solve": "mumps_solve_seconds_1t",
-              "memory": "mumps_factor_entries"},
+              "memory": "mumps_bytes"},
 }
-UNITS = {"factor": (1.0, "s"), "solve": (1.0, "s"), "memory": (8e-6, "MB")}
+UNITS = {"factor": (1.0, "s"), "solve": (1.0, "s"), "memory": (1e-6, "MB")}
 
 
 def series(rows, method, what):

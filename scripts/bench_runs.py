@@ -73,7 +73,7 @@ class Programs:
         """The figures that the driver of the kernels prints."""
         done = Finished([self.driver, *words])
         if done.status != 0:
-            raise ScriptError(f"carom_kernels {words}: {last_line(done.errors)}")
+            raise ScriptError(f"carom_kernels {words[0]}: {last_line(done.errors)}")
         return {**figures(done.output), "seconds": done.seconds, "memory": done.memory}
 
     def run(self, deck, threads=1, log=True, **definitions):

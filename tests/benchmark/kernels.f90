@@ -10,7 +10,7 @@ program kernels
    use errors, only: error_type
    use clock, only: seconds_now
    use threads, only: set_threads
-   use skyline_matrix, only: skyline_type, profile_entries, profile_cost
+   use skyline_matrix, only: skyline_type, profile_entries, profile_cost, stored_bytes
    use deck_reader, only: read_deck, definition_type
    use scene_setup, only: simulation_type, build_scene, begin_step
    use machine_rates, only: rates_type, new_rates, product_rate, read_rate, triad_rate
@@ -88,9 +88,9 @@ contains
          call set_threads(n_threads)
          best = 0.0_wp
          do i = 1, 5
-            call product_rate(rates, rate)
+            call product_rate(rates, n_threads, rate)
             best(1) = max(best(1), rate)
-            call read_rate(rates, rate)
+            call read_rate(rates, n_threads, rate)
             best(2) = max(best(2), rate)
             call triad_rate(rates, rate)
             best(3) = max(best(3), rate)
@@ -162,7 +162,7 @@ contains
          call show('profile_entries', real(profile_entries(profile), wp))
          call show('profile_cost', profile_cost(profile))
          call show('factor_operations', column_operations(profile))
-         call show('stored_entries', real(size(matrix%values, kind=int64), wp))
+         call show('stored_bytes', real(stored_bytes(matrix), wp))
       end associate
       do i = 1, n_kinds
          call show_timing(timings(i))

@@ -3,7 +3,7 @@
 module machine_rates
    use kinds, only: wp
    use clock, only: seconds_now
-   use blas_interfaces, only: ddot
+   use blas_interfaces, only: ddot, dgemm
    implicit none
    private
 
@@ -11,17 +11,6 @@ module machine_rates
 
    integer, parameter :: order = 1200            !! of the matrices that are multiplied
    integer, parameter :: length = 32000000       !! of the arrays that are read and written
-
-   interface
-      subroutine dgemm(transa, transb, m, n, k, alpha, a, lda, b, ldb, beta, c, ldc)
-         import :: wp
-         implicit none
-         character(len=1), intent(in) :: transa, transb
-         integer, intent(in) :: m, n, k, lda, ldb, ldc
-         real(wp), intent(in) :: alpha, a(lda, k), b(ldb, n), beta
-         real(wp), intent(inout) :: c(ldc, n)
-      end subroutine dgemm
-   end interface
 
    !> The arrays the rates are measured with.
    type :: rates_type
@@ -45,27 +34,45 @@ contains
       self%z = 0.0_wp
    end subroutine new_rates
 
-   !> Operations a second of one dgemm with the threads now set.
-   subroutine product_rate(self, rate)
+   !> Operations a second of a matrix product, the columns of the result shared among threads.
+   subroutine product_rate(self, n_threads, rate)
       type(rates_type), intent(inout) :: self
+      integer, intent(in) :: n_threads
       real(wp), intent(out) :: rate
+      integer :: first, n, i
       real(wp) :: started
 
       started = seconds_now()
-      call dgemm('N', 'N', order, order, order, 1.0_wp, self%a, order, self%b, order, 0.0_wp, &
-            self%c, order)
-      rate = 2.0_wp*real(order, wp)**3/(seconds_now() - started)
+      n = order/n_threads
+      !$omp parallel do num_threads(n_threads) private(first) schedule(static, 1)
+      do i = 1, n_threads
+         first = 1 + (i - 1)*n
+         call dgemm('N', 'N', order, n, order, 1.0_wp, self%a, order, self%b(:, first), order, &
+               0.0_wp, self%c(:, first), order)
+      end do
+      !$omp end parallel do
+      rate = 2.0_wp*real(order, wp)**2*real(n*n_threads, wp)/(seconds_now() - started)
    end subroutine product_rate
 
-   !> Bytes a second of reading one array, as the sum of its squares.
-   subroutine read_rate(self, rate)
+   !> Bytes a second of reading one array, as the sum of its squares, in equal parts by threads.
+   subroutine read_rate(self, n_threads, rate)
       type(rates_type), intent(inout) :: self
+      integer, intent(in) :: n_threads
       real(wp), intent(out) :: rate
-      real(wp) :: started
+      integer :: first, n, i
+      real(wp) :: started, total
 
       started = seconds_now()
-      self%z(1) = ddot(length, self%x, 1, self%x, 1)
-      rate = 8.0_wp*real(length, wp)/(seconds_now() - started)
+      n = length/n_threads
+      total = 0.0_wp
+      !$omp parallel do num_threads(n_threads) private(first) schedule(static, 1) reduction(+:total)
+      do i = 1, n_threads
+         first = 1 + (i - 1)*n
+         total = total + ddot(n, self%x(first:), 1, self%x(first:), 1)
+      end do
+      !$omp end parallel do
+      self%z(1) = total
+      rate = 8.0_wp*real(n*n_threads, wp)/(seconds_now() - started)
    end subroutine read_rate
 
    !> Bytes a second of z = x + 2 y, those read and those written.

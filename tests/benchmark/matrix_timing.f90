@@ -68,15 +68,15 @@ contains
       self%assemble = min(self%assemble, seconds_now() - started)
       known = [(sin(real(i, wp)), i=1, matrix%n)]
       b = multiply(matrix, known)
-      call product_rate(rates, rate)
+      call product_rate(rates, self%n_threads, rate)
       self%product_rate = max(self%product_rate, rate)
       started = seconds_now()
       call factorize(matrix, report)
       self%factorize = min(self%factorize, seconds_now() - started)
       do i = 1, n_solves
-         call product_rate(rates, rate)
+         call product_rate(rates, self%n_threads, rate)
          self%product_rate = max(self%product_rate, rate)
-         call read_rate(rates, rate)
+         call read_rate(rates, self%n_threads, rate)
          self%read_rate = max(self%read_rate, rate)
          x = b
          started = seconds_now()
@@ -88,8 +88,8 @@ contains
       self%n_rounds = self%n_rounds + 1
    end subroutine time_round
 
-   !> Operations a factorization by columns needs within the profile: two for each entry above the
-   !> one computed that column i and column j share.
+   !> Operations a factorization by columns needs within the profile: two for each entry above one
+   !> computed that column i and column j share.
    pure function column_operations(profile) result(operations)
       type(profile_type), intent(in) :: profile
       real(wp) :: operations
