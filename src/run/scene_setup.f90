@@ -227,6 +227,7 @@ contains
                self%model%equations, system%profile, self%ordering)
          call system%matrices%forget()
          call find_massless(system)
+         self%scene%explicit%ready = .false.
          call begin_loads(system%loads, system%structure, self%model, i_step, t)
          if (system%static) return
          ! the deck's initial velocities wait for the first dynamic step
