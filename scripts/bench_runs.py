@@ -10,6 +10,7 @@ from pathlib import Path
 from carom_results import ScriptError
 
 FEWEST_STEPS = 10
+RUN_LIMIT = 600.0         # seconds that a run may take
 
 
 class Finished:
@@ -76,13 +77,15 @@ class Programs:
             raise ScriptError(f"carom_kernels {words[0]}: {last_line(done.errors)}")
         return {**figures(done.output), "seconds": done.seconds, "memory": done.memory}
 
-    def run(self, deck, threads=1, log=True, **definitions):
+    def run(self, deck, threads=1, log=True, limit=RUN_LIMIT, **definitions):
         """A run of a deck: its seconds and memory, and what its log counts."""
         output = deck.with_suffix(".h5")
         command = [self.carom, "run", deck, "-o", output, "--quiet", "--threads", threads]
         for name, value in definitions.items():
             command += ["--define", f"{name}={value}"]
-        done = Finished(command)
+        done = Finished(command, limit)
+        if done.late:
+            raise ScriptError(f"carom run {deck.name}: stopped after {limit:.0f} s")
         if done.status != 0:
             raise ScriptError(f"carom run {deck.name}: {last_line(done.errors)}")
         found = {"seconds": done.seconds, "memory": done.memory, "output": output}
