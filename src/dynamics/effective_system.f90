@@ -3,7 +3,7 @@ module effective_system
    use kinds, only: wp, int64
    use errors, only: error_type, new_error, status_numerical
    use skyline_matrix, only: skyline_type, profile_type, profile_entries, combine
-   use skyline_ldlt, only: factorize, solve, ldlt_report_type
+   use skyline_ldlt, only: factorize, solve, solve_many, ldlt_report_type
    use structure, only: structure_type, freedom_name
    use effective_matrix, only: assemble_effective, assemble_sum
    implicit none
@@ -32,10 +32,13 @@ module effective_system
       integer(int64) :: clock = 0
       integer(int64), public :: n_factorizations = 0
       integer(int64), public :: n_solves = 0
+      integer(int64), public :: generation = 0    !! how often all matrices have been dropped
    contains
       procedure :: prepare
       procedure :: solve => solve_current
+      procedure :: solve_many => solve_columns
       procedure :: forget
+      procedure :: current_factors
    end type effective_system_type
 
 contains
@@ -52,12 +55,21 @@ contains
       class(effective_system_type), intent(inout) :: self
       integer :: i
 
+      self%generation = self%generation + 1
       self%has_parts = .false.
       do i = 1, n_slots
          self%slots(i)%factors = -1.0_wp
          self%slots(i)%last_use = -1
       end do
    end subroutine forget
+
+   !> c_m, c_c, c_k of the matrix last prepared.
+   pure function current_factors(self) result(factors)
+      class(effective_system_type), intent(in) :: self
+      real(wp) :: factors(3)
+
+      factors = self%slots(self%current)%factors
+   end function current_factors
 
    !> Makes c_m M + c_c C + c_k K the matrix that `solve` uses, from the store if it is there.
    !> A vanishing pivot is an error that names the node and freedom.
@@ -137,5 +149,14 @@ contains
       self%n_solves = self%n_solves + 1
       call solve(self%slots(self%current)%matrix, b)
    end subroutine solve_current
+
+   !> Solves for several right-hand sides with the matrix last prepared; b is overwritten.
+   subroutine solve_columns(self, b)
+      class(effective_system_type), intent(inout) :: self
+      real(wp), intent(inout), contiguous :: b(:, :)   !! (n_eq, right-hand sides)
+
+      self%n_solves = self%n_solves + size(b, 2)
+      call solve_many(self%slots(self%current)%matrix, b)
+   end subroutine solve_columns
 
 end module effective_system

@@ -8,13 +8,14 @@ module impact_scene
    use energy_ledger, only: ledger_type, record_span, take_back_damping, record_impact, &
          record_friction, record_springs
    use explicit_motion, only: explicit_motion_type
+   use compliance_store, only: compliance_store_type
    use contact_geometry, only: contact_geometry_type
    use constraint_rows, only: rows_type, row_rates, row_accelerations, row_curvature, &
          acceleration_size, contact_forces, slip_increments, wall_work, law_penalty
    implicit none
    private
 
-   public :: scene_type, contact_motion_type, event_type, impact_settings_type
+   public :: scene_type, contact_motion_type, event_type, impact_settings_type, anchor_type
    public :: event_impact, event_capture, event_release, event_contact, event_limit
    public :: new_contact_motion, record_event, record_residual, accept_span, capture_speeds
    public :: note_contact_force, opening_rows, let_go
@@ -76,16 +77,30 @@ module impact_scene
       real(wp) :: return_parameter = 0.3_wp      !! alpha
       logical :: direct = .false.
       logical :: locate_release = .true.
+      logical :: anchored = .false.              !! EVENTS=ANCHOR
    end type impact_settings_type
+
+   !> The step at hand of a motion whose steps begin at events, not at the deck's times: from one
+   !> state to another, after which something may happen.
+   type :: anchor_type
+      logical :: running = .false.               !! the step reaches beyond the deck's time
+      real(wp) :: dt = 0.0_wp                    !! every step's size
+      type(contact_motion_type) :: from, to
+      logical, allocatable :: held(:)            !! (n_rows) rows that touch to the end
+      logical, allocatable :: hit(:)             !! (n_rows) rows that are hit then
+      logical, allocatable :: release(:)         !! (n_rows) rows that let go then
+   end type anchor_type
 
    !> Everything an impact method needs besides the motion.
    type :: scene_type
       type(system_type) :: system
       type(rows_type) :: rows
       type(contact_geometry_type) :: geometry
+      type(compliance_store_type) :: compliances
       type(impact_settings_type) :: settings
       type(ledger_type) :: ledger
       type(explicit_motion_type) :: explicit     !! of steps that are wholly explicit
+      type(anchor_type) :: anchor
       type(event_type), allocatable :: events(:) !! grown by doubling
       integer :: n_events = 0                    !! since the last time they were fetched
       real(wp) :: dt = 0.0_wp                    !! of the increment at hand

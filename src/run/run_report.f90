@@ -12,7 +12,8 @@ module run_report
    use transformation, only: impact_beta
    use impact_scene, only: event_impact, event_capture, event_release, event_contact, event_limit
    use automatic_groups, only: partition_type
-   use scene_setup, only: simulation_type, count_increments
+   use increment_count, only: count_increments
+   use scene_setup, only: simulation_type
    use run_log, only: log_type, say
    use command_line, only: version_text
    implicit none
@@ -154,10 +155,14 @@ contains
          case (method_lagrange)
             line = 'Lagrange multipliers, velocities corrected at the ends of steps'
          case default
-            line = 'transformation, beta of the impact step ' &
-                  //to_text(impact_beta(simulation%scene, &
-                  simulation%model%steps(1)%dt))//' ('//trim(merge('given    ', &
-                  'automatic', settings%beta_choice == beta_given))//')'
+            if (settings%anchored) then
+               line = 'transformation, steps of one size that begin at events'
+            else
+               line = 'transformation, beta of the impact step ' &
+                     //to_text(impact_beta(simulation%scene, &
+                     simulation%model%steps(1)%dt))//' ('//trim(merge('given    ', &
+                     'automatic', settings%beta_choice == beta_given))//')'
+            end if
          end select
       end associate
       call say(log, '  impact: '//line)

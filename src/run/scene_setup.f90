@@ -21,13 +21,13 @@ module scene_setup
    use initial_contact, only: adjustment_type, build_rows, adjust_pairs, adjustment_remark, &
          check_overlaps, check_jump
    use impact_method, only: impact_method_type
+   use increment_count, only: count_increments
    use automatic_groups, only: partition_type, resolve_automatic
-   use impact_factory, only: make_impact_method, check_method
+   use impact_factory, only: make_impact_method, check_method, check_anchor
    implicit none
    private
 
    public :: simulation_type, build_scene, begin_step, initial_motion, add_remark
-   public :: count_increments, last_increment, count_events
 
    !> All that a run computes with.
    type :: simulation_type
@@ -41,6 +41,9 @@ module scene_setup
       integer, allocatable :: deck_scheme(:)     !! (n_groups) as the deck has it
       type(source_line_type), allocatable :: remarks(:)
       type(ordering_type) :: ordering            !! of the equations, this step
+      logical, allocatable :: held(:)            !! (n_freedoms) prescribed when they were ordered
+      integer, allocatable :: ordered_scheme(:)  !! (n_groups) at that time
+      real(wp) :: critical_gamma = -1.0_wp       !! for which `critical` holds, -1 for none
       integer(int64) :: n_events(5) = 0          !! by event_ kinds, over the whole run
       integer :: most_touching = 0               !! rows in contact at once
    end type simulation_type
@@ -222,9 +225,7 @@ contains
          if (system%static) system%structure%groups%scheme = scheme_implicit
          if (step%explicit) system%structure%groups%scheme = scheme_explicit
          call begin_conditions(self, i_step, t)
-         call order_equations(system%structure, &
-               prescribed_freedoms(system%motions, system%structure%map%n_freedoms), &
-               self%model%equations, system%profile, self%ordering)
+         call number_anew(self)
          call system%matrices%forget()
          call find_massless(system)
          self%scene%explicit%ready = .false.
@@ -241,8 +242,29 @@ contains
          call check_critical(self, step, error)
          if (allocated(error)) return
          call check_method(self%model, self%scene%settings, step, system%newmark%beta, error)
+         if (allocated(error)) return
+         call check_anchor(self%model, self%scene, step, error)
       end associate
    end subroutine begin_step
+
+   !> Orders the equations, unless nothing has changed that they depend on.
+   subroutine number_anew(self)
+      type(simulation_type), intent(inout) :: self
+      logical :: held(self%scene%system%structure%map%n_freedoms)
+
+      associate (system => self%scene%system)
+         held = prescribed_freedoms(system%motions, size(held))
+         if (allocated(self%held)) then
+            if (all(self%held .eqv. held) .and. &
+                  all(self%ordered_scheme == system%structure%groups%scheme)) return
+         end if
+         call order_equations(system%structure, held, self%model%equations, system%profile, &
+               self%ordering)
+         self%held = held
+         self%ordered_scheme = system%structure%groups%scheme
+         self%critical_gamma = -1.0_wp
+      end associate
+   end subroutine number_anew
 
    !> The frames of a frequency step have frequencies for times: no other step may follow, and none
    !> before it but static ones.
@@ -280,38 +302,6 @@ contains
                'raise INC, or take larger increments')
       end associate
    end subroutine check_increments
-
-   !> Increments of a step; a remainder of more than round-off gets one of its own.
-   pure function count_increments(step) result(n)
-      type(step_type), intent(in) :: step
-      integer :: n
-
-      n = max(1, ceiling(step%duration/step%dt*(1.0_wp - 1.0e-9_wp)))
-   end function count_increments
-
-   !> Length of the last increment: the step's dt unless a remainder is left.
-   pure function last_increment(step, n) result(dt)
-      type(step_type), intent(in) :: step
-      integer, intent(in) :: n
-      real(wp) :: dt
-
-      dt = step%duration - (n - 1)*step%dt
-      if (abs(dt - step%dt) <= 1.0e-6_wp*step%dt) dt = step%dt
-   end function last_increment
-
-   !> Adds the events of the increment at hand to the count of the run; sees how many rows touch.
-   pure subroutine count_events(self)
-      type(simulation_type), intent(inout) :: self
-      integer :: i
-
-      do i = 1, self%scene%n_events
-         associate (kind => self%scene%events(i)%kind)
-            self%n_events(kind) = self%n_events(kind) + 1
-         end associate
-      end do
-      self%most_touching = max(self%most_touching, &
-            count(self%motion%touching .or. self%motion%lambda > 0.0_wp))
-   end subroutine count_events
 
    subroutine begin_conditions(self, i_step, t)
       type(simulation_type), intent(inout) :: self
@@ -359,8 +349,12 @@ contains
       real(wp), parameter :: slack = 1.0e-9_wp
 
       associate (structure => self%scene%system%structure, limit => self%critical(scheme_explicit))
-         call find_critical(structure, scheme_implicit, step%gamma, self%critical(scheme_implicit))
-         call find_critical(structure, scheme_explicit, step%gamma, limit)
+         if (abs(self%critical_gamma - step%gamma) > 0.0_wp) then
+            call find_critical(structure, scheme_implicit, step%gamma, &
+                  self%critical(scheme_implicit))
+            call find_critical(structure, scheme_explicit, step%gamma, limit)
+            self%critical_gamma = step%gamma
+         end if
          self%scene%system%omega_max = self%critical%omega
          if (limit%massless_freedom > 0) then
             call fail_at(error, self%model%source, step%procedure_place, &
