@@ -28,15 +28,22 @@ module threads
 
 contains
 
-   !> Sets the threads of loops and of the direct solver (0: as the environment says), and has
-   !> OpenBLAS work in the thread that calls it. Another library has no such call: it is looked up
-   !> at run time, so that any BLAS can be linked.
+   !> Sets the threads of loops and of the direct solver (0: as OMP_NUM_THREADS says, else one, so
+   !> that runs side by side do not wait for each other), and has OpenBLAS work in the thread that
+   !> calls it. Another library has no such call: it is looked up at run time, so that any BLAS can
+   !> be linked.
    subroutine set_threads(n)
       integer, intent(in) :: n
       procedure(setter_interface), pointer :: setter
       type(c_funptr) :: address
+      integer :: length
 
-      if (n > 0) call omp_set_num_threads(n)
+      call get_environment_variable('OMP_NUM_THREADS', length=length)
+      if (n > 0) then
+         call omp_set_num_threads(n)
+      else if (length == 0) then
+         call omp_set_num_threads(1)
+      end if
       address = find_symbol(c_null_ptr, 'openblas_set_num_threads'//c_null_char)
       if (.not. c_associated(address)) return
       call c_f_procpointer(address, setter)

@@ -21,7 +21,7 @@ module command_line
       character(len=:), allocatable :: deck
       character(len=:), allocatable :: output          !! result file
       type(definition_type), allocatable :: definitions(:)
-      integer :: threads = 0                           !! 0: as the environment says
+      integer :: threads = 0                           !! 0: OMP_NUM_THREADS, else 1
       logical :: quiet = .false.
    end type command_type
 
@@ -41,7 +41,7 @@ contains
             '           (default: beside the deck, with its name)'//nl// &
             '  check    reads the deck, builds the model and prints what a run would do'//nl// &
             '  --define overrides a *PARAMETER of the deck'//nl// &
-            '  --threads threads to work with'//nl// &
+            '  --threads threads to work with (default: OMP_NUM_THREADS, else 1)'//nl// &
             '  --quiet  no progress on the terminal'//nl//nl// &
             'exit status: 0 done, 1 usage, 2 deck, 3 file, 4 numerical, 5 interrupted, 6 internal'
    end function usage_text
