@@ -12,7 +12,7 @@ module effective_matrix
    private
 
    public :: find_profile, assemble_effective, assemble_sum, mark_implicit
-   public :: couples_equations, equations_of
+   public :: couples_equations, equations_of, has_implicit_matrix
 
    !> Elements from which threads share a group.
    integer, parameter :: worth_threads = 500

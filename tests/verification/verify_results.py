@@ -3,19 +3,19 @@ import os
 import re
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
 import h5py
 import numpy as np
 
-from carom_case import ROOT, Checks, run_deck
+from carom_case import ROOT, Checks, run_deck, scratch_folder
 
 PROGRAM = str(Path(sys.argv[1]).resolve())
 HERE = Path(__file__).parent
 ENERGIES = ['time', 'kinetic', 'strain', 'damping', 'plastic', 'friction', 'impact_loss',
             'external_work', 'total', 'balance_error']
-EVENTS = ['time', 'pair', 'node', 'gap_rate_before', 'gap_rate_after', 'impulse', 'beta', 'kind']
+EVENTS = ['time', 'pair', 'node', 'gap_rate_before', 'gap_rate_after', 'impulse', 'beta', 'kind',
+          'solves', 'factorizations']
 
 # a mass on a spring and a short bar, side by side in front of a wall
 DECK = """*HEADING
@@ -128,7 +128,7 @@ U
 
 def carom(*words, deck=None):
     """Runs the program in a new folder, with `deck` there as deck.inp; the run and the folder."""
-    folder = Path(tempfile.mkdtemp(prefix='carom_'))
+    folder = scratch_folder()
     if deck is not None:
         (folder/'deck.inp').write_text(deck)
     done = subprocess.run([PROGRAM, *words], capture_output=True, text=True, cwd=folder,
