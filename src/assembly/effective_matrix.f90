@@ -6,12 +6,16 @@ module effective_matrix
    use skyline_matrix, only: profile_type, new_profile, couple, skyline_type, new_skyline
    use element_groups, only: group_type, group_mass
    use dof_map, only: dof_map_type
+   use element_colours, only: colours_type, colour_elements
    use structure, only: structure_type, gather, group_history
    implicit none
    private
 
    public :: find_profile, assemble_effective, assemble_sum, mark_implicit
    public :: couples_equations, equations_of, has_implicit_matrix
+
+   !> Elements from which threads share a group.
+   integer, parameter :: worth_threads = 500
 
 contains
 
@@ -56,8 +60,7 @@ contains
    end subroutine mark_implicit
 
    !> Whether a group adds stiffness or damping to the effective matrix: it is implicit and more
-   !> than
-   !> mere mass.
+   !> than mere mass.
    pure function has_implicit_matrix(group) result(has)
       type(group_type), intent(in) :: group
       logical :: has
@@ -97,7 +100,7 @@ contains
 
    !> c_mass M + c_damping C + c_stiffness K, damping and tangent stiffness of implicit groups only.
    !> Without stiffness and damping, massless equations get a unit diagonal.
-   pure subroutine assemble_effective(structure, profile, d, history, factors, matrix)
+   subroutine assemble_effective(structure, profile, d, history, factors, matrix)
       type(structure_type), intent(in) :: structure
       type(profile_type), intent(in) :: profile
       real(wp), intent(in) :: d(:)               !! (n_freedoms) where the tangent is taken
@@ -114,7 +117,7 @@ contains
    end subroutine assemble_effective
 
    !> The same sum as it is, massless equations with an empty diagonal.
-   pure subroutine assemble_sum(structure, profile, d, history, factors, matrix)
+   subroutine assemble_sum(structure, profile, d, history, factors, matrix)
       type(structure_type), intent(in) :: structure
       type(profile_type), intent(in) :: profile
       real(wp), intent(in) :: d(:)               !! (n_freedoms) where the tangent is taken
@@ -132,33 +135,60 @@ contains
       end do
    end subroutine assemble_sum
 
-   pure subroutine add_group(structure, group, d, history, factors, matrix)
+   !> Adds the elements of a group, those of one colour after those of another; a few are added as
+   !> they come.
+   subroutine add_group(structure, group, d, history, factors, matrix)
       type(structure_type), intent(in) :: structure
       type(group_type), intent(in) :: group
       real(wp), intent(in) :: d(:), history(:), factors(3)
       type(skyline_type), intent(inout) :: matrix
-      real(wp), allocatable :: local(:, :), total(:, :), part(:, :), memory(:, :)
-      integer :: e, n
+      real(wp), allocatable :: local(:, :), memory(:, :), total(:, :), part(:, :)
+      type(colours_type) :: colours
+      integer :: k, i, n
 
       if (.not. couples_equations(group)) return
       n = size(group%lm, 1)
-      allocate (local(n, size(group%lm, 2)), total(n, n), part(n, n))
+      allocate (local(n, size(group%lm, 2)))
       call gather(group, d, local)
       memory = group_history(group, history)
-      do e = 1, size(group%lm, 2)
-         total = 0.0_wp
-         if (.not. group%lumped) then
-            call group_mass(group, e, .false., part)
-            total = factors(1)*part
-         end if
-         if (has_implicit_matrix(group)) then
-            call group%element%stiffness(e, local(:, e), memory(:, e), part)
-            total = total + factors(3)*part
-            if (size(group%damping) > 0) total = total + factors(2)*group%damping(:, :, e)
-         end if
-         call add_element(structure%map, matrix, group%lm(:, e), total)
+      if (size(group%lm, 2) < worth_threads) then
+         colours%first = [1, size(group%lm, 2) + 1]
+         colours%element = [(i, i=1, size(group%lm, 2))]
+      else
+         call colour_elements(structure%map, group%lm, colours)
+      end if
+      !$omp parallel if (size(group%lm, 2) >= worth_threads) private(total, part, k)
+      allocate (total(n, n), part(n, n))
+      do k = 1, size(colours%first) - 1
+         !$omp do schedule(static)
+         do i = colours%first(k), colours%first(k + 1) - 1
+            associate (e => colours%element(i))
+               call element_matrix(group, e, local(:, e), memory(:, e), factors, total, part)
+               call add_element(structure%map, matrix, group%lm(:, e), total)
+            end associate
+         end do
+         !$omp end do
       end do
+      !$omp end parallel
    end subroutine add_group
+
+   !> The share of an element in the sum.
+   pure subroutine element_matrix(group, e, local, memory, factors, total, part)
+      type(group_type), intent(in) :: group
+      integer, intent(in) :: e
+      real(wp), intent(in) :: local(:), memory(:), factors(3)
+      real(wp), intent(out) :: total(:, :), part(:, :)   !! part: work space
+
+      total = 0.0_wp
+      if (.not. group%lumped) then
+         call group_mass(group, e, .false., part)
+         total = factors(1)*part
+      end if
+      if (.not. has_implicit_matrix(group)) return
+      call group%element%stiffness(e, local, memory, part)
+      total = total + factors(3)*part
+      if (size(group%damping) > 0) total = total + factors(2)*group%damping(:, :, e)
+   end subroutine element_matrix
 
    pure subroutine add_element(map, matrix, lm, values)
       type(dof_map_type), intent(in) :: map
