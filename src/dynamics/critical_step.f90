@@ -5,7 +5,7 @@
 !> stiffness.
 module critical_step
    use kinds, only: wp
-   use small_eigen, only: largest_eigenvalue
+   use small_eigen, only: largest_eigenvalue, eigenvalue_bound
    use element_groups, only: group_type, group_mass
    use dof_map, only: dof_map_type
    use structure, only: structure_type, least_mass
@@ -29,6 +29,17 @@ module critical_step
       integer, allocatable :: equation(:)
       real(wp), allocatable :: matrix(:, :)
    end type folded_type
+
+   !> Freedoms of an element that is remembered at most.
+   integer, parameter :: most_remembered = 16
+
+   !> The elements last looked into, in turn.
+   type :: bounded_type
+      integer :: next = 0
+      integer :: n(4) = -1
+      real(wp) :: share(most_remembered, 4) = 0.0_wp
+      real(wp) :: matrix(most_remembered, most_remembered, 4) = 0.0_wp
+   end type bounded_type
 
 contains
 
@@ -157,6 +168,10 @@ contains
       integer :: i, k, column, n_terms
       real(wp), allocatable :: t(:, :)
 
+      if (size(map%dependent) == 0) then
+         call select_equations(map, lm, matrix, folded)
+         return
+      end if
       n_terms = 0
       do i = 1, size(lm)
          if (lm(i) > 0) n_terms = n_terms + map%first(lm(i) + 1) - map%first(lm(i))
@@ -177,6 +192,27 @@ contains
       end do
       folded%matrix = matmul(transpose(t(:, :folded%n)), matmul(matrix, t(:, :folded%n)))
    end subroutine fold
+
+   !> The same without constraints: what is not prescribed.
+   pure subroutine select_equations(map, lm, matrix, folded)
+      type(dof_map_type), intent(in) :: map
+      integer, intent(in) :: lm(:)
+      real(wp), intent(in) :: matrix(:, :)
+      type(folded_type), intent(out) :: folded
+      integer :: rows(size(lm)), i
+
+      do i = 1, size(lm)
+         if (lm(i) == 0) cycle
+         if (map%first(lm(i) + 1) == map%first(lm(i))) cycle
+         folded%n = folded%n + 1
+         rows(folded%n) = i
+      end do
+      allocate (folded%equation(folded%n), folded%matrix(folded%n, folded%n))
+      do i = 1, folded%n
+         folded%equation(i) = map%equation(map%first(lm(rows(i))))
+         folded%matrix(:, i) = matrix(rows(:folded%n), rows(i))
+      end do
+   end subroutine select_equations
 
    !> Adds a group to the diagonals of K and C.
    subroutine sum_diagonals(structure, group, k_diagonal, c_diagonal)
@@ -215,13 +251,15 @@ contains
       real(wp), intent(in) :: m(:), k_diagonal(:), c_diagonal(:)   !! (n_eq)
       type(critical_type), intent(inout) :: critical
       type(folded_type) :: folded
+      type(bounded_type) :: last
       real(wp) :: k(size(group%lm, 1), size(group%lm, 1)), lambda
       integer :: e
 
       do e = 1, size(group%lm, 2)
          call group%element%largest_stiffness(e, k)
          call fold(structure%map, group%lm(:, e), k, folded)
-         call bound_element(structure%map, folded, m, k_diagonal, lambda, critical%massless_freedom)
+         call bound_element(structure%map, folded, m, k_diagonal, lambda, &
+               critical%massless_freedom, last, critical%omega)
          if (lambda > critical%omega) then
             critical%omega = lambda
             critical%element = group%member(e)
@@ -234,16 +272,19 @@ contains
    end subroutine bound_group
 
    !> Largest eigenvalue of a folded element matrix on its share of the mass; a freedom that it
-   !> acts on
-   !> and that has no mass is named.
-   pure subroutine bound_element(map, folded, m, diagonal, lambda, massless_freedom)
+   !> acts on and that has no mass is named. Given the last element looked into and the largest
+   !> value so far, an element that is the same or that cannot be above it is not looked into: it
+   !> gets zero.
+   pure subroutine bound_element(map, folded, m, diagonal, lambda, massless_freedom, last, largest)
       type(dof_map_type), intent(in) :: map
       type(folded_type), intent(in) :: folded
       real(wp), intent(in) :: m(:), diagonal(:)  !! (n_eq) mass, assembled diagonal
       real(wp), intent(out) :: lambda
       integer, intent(inout) :: massless_freedom
+      type(bounded_type), intent(inout), optional :: last
+      real(wp), intent(in), optional :: largest
       integer :: rows(folded%n), n, i
-      real(wp) :: share(folded%n)
+      real(wp) :: share(folded%n), matrix(folded%n, folded%n)
 
       n = 0
       do i = 1, folded%n
@@ -258,8 +299,55 @@ contains
             share(n) = m(equation)*folded%matrix(i, i)/diagonal(equation)
          end associate
       end do
-      lambda = largest_eigenvalue(folded%matrix(rows(:n), rows(:n)), share(:n))
+      do i = 1, n
+         matrix(:n, i) = folded%matrix(rows(:n), rows(i))
+      end do
+      lambda = 0.0_wp
+      if (present(last)) then
+         if (is_known(last, matrix(:n, :n), share(:n))) return
+         if (eigenvalue_bound(matrix(:n, :n), share(:n)) <= largest) return
+         call remember(last, matrix(:n, :n), share(:n))
+      end if
+      lambda = largest_eigenvalue(matrix(:n, :n), share(:n))
    end subroutine bound_element
+
+   !> Whether one of the elements remembered has this matrix and no more mass.
+   pure function is_known(last, matrix, share) result(known)
+      type(bounded_type), intent(in) :: last
+      real(wp), intent(in) :: matrix(:, :), share(:)
+      logical :: known
+      real(wp), parameter :: round_off = 1.0e-12_wp
+      real(wp) :: largest
+      integer :: i, j, n
+
+      known = .false.
+      n = size(share)
+      do i = 1, size(last%n)
+         if (last%n(i) /= n) cycle
+         if (any(share < (1.0_wp - round_off)*last%share(:n, i))) cycle
+         largest = 0.0_wp
+         do j = 1, n
+            largest = max(largest, matrix(j, j))
+         end do
+         if (any(abs(matrix - last%matrix(:n, :n, i)) > round_off*largest)) cycle
+         known = .true.
+         return
+      end do
+   end function is_known
+
+   !> Keeps an element in place of the one kept longest.
+   pure subroutine remember(last, matrix, share)
+      type(bounded_type), intent(inout) :: last
+      real(wp), intent(in) :: matrix(:, :), share(:)
+      integer :: n
+
+      n = size(share)
+      if (n > most_remembered) return
+      last%next = modulo(last%next, size(last%n)) + 1
+      last%n(last%next) = n
+      last%share(:n, last%next) = share
+      last%matrix(:n, :n, last%next) = matrix
+   end subroutine remember
 
    !> The freedom that an equation stands for.
    pure function freedom_of(map, equation) result(freedom)
