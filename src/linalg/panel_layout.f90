@@ -4,7 +4,7 @@
 !> in every later panel up to its own. Equations that nothing couples stand behind the panels with
 !> one entry each, and the others are numbered without them.
 module panel_layout
-   use kinds, only: int64
+   use kinds, only: wp, int64
    implicit none
    private
 
@@ -14,6 +14,9 @@ module panel_layout
    integer, parameter :: max_width = 32
    !> A panel has this part of its rows as columns, so that little is stored in vain.
    integer, parameter :: rows_a_column = 6
+   !> Part of the rows below a panel that count as near, and from how many it matters.
+   real(wp), parameter :: near_part = 0.45_wp
+   integer, parameter :: worth_dividing = 100
 
    !> Rows come in runs of consecutive ones. Row i of run r in panel p, with column j, stands at
    !> at(p) + (run_place(r) + i - run_row(r))*width + j - column(p).
@@ -28,6 +31,8 @@ module panel_layout
       integer, allocatable :: column(:)          !! (n_panels + 1) first column of each panel
       integer(int64), allocatable :: at(:)       !! (n_panels + 1) address of its first entry
       integer, allocatable :: source(:)          !! (n_panels) first panel with a row among its own
+      integer, allocatable :: far_panel(:)       !! (n_panels) of the first row that is far off
+      integer, allocatable :: far_place(:)       !! (n_panels) rows before that one
       integer, allocatable :: first_run(:)       !! (n_panels + 1), the last of each is an end mark
       integer, allocatable :: run_row(:)         !! first row of each run; end mark: n_coupled + 1
       integer, allocatable :: run_place(:)       !! rows of the panel before it; end mark: all
@@ -35,6 +40,8 @@ module panel_layout
       procedure :: address
       procedure :: width
       procedure :: n_rows
+      procedure :: rows_before
+      procedure :: run_of
       procedure :: bytes
    end type panel_layout_type
 
@@ -51,6 +58,7 @@ contains
       call number_coupled(self, first_row, coupled, top)
       call choose_panels(self, top)
       call list_rows(self, top)
+      call divide_tails(self)
       call place_entries(self)
    end subroutine new_panel_layout
 
@@ -150,6 +158,28 @@ contains
       end do
    end subroutine list_rows
 
+   !> Cuts the rows below each panel in two, the nearer ones and those far off, so that two threads
+   !> can share them: a later panel's far rows do not begin in an earlier panel.
+   pure subroutine divide_tails(self)
+      type(panel_layout_type), intent(inout) :: self
+      integer :: p, near, run, row, panel
+
+      allocate (self%far_panel(self%n_panels), self%far_place(self%n_panels))
+      panel = 0
+      do p = 1, self%n_panels
+         near = self%width(p) + int(near_part*(self%n_rows(p) - self%width(p)))
+         if (self%n_rows(p) - self%width(p) < worth_dividing) near = self%n_rows(p) - 1
+         run = self%first_run(p)
+         do while (self%run_place(run + 1) <= near)
+            run = run + 1
+         end do
+         row = self%run_row(run) + near - self%run_place(run)
+         panel = max(panel, self%panel_of(row) + 1)
+         self%far_panel(p) = panel
+         self%far_place(p) = self%rows_before(p, self%column(panel))
+      end do
+   end subroutine divide_tails
+
    !> Addresses of the panels, then of the equations that nothing couples.
    pure subroutine place_entries(self)
       type(panel_layout_type), intent(inout) :: self
@@ -191,11 +221,39 @@ contains
       n_rows = self%run_place(self%first_run(p + 1) - 1)
    end function n_rows
 
+   !> Rows of a panel before a row.
+   pure integer function rows_before(self, p, row)
+      class(panel_layout_type), intent(in) :: self
+      integer, intent(in) :: p, row              !! row: not before the panel's first column
+      integer :: run
+
+      run = self%run_of(p, row)
+      rows_before = min(self%run_place(run) + row - self%run_row(run), self%run_place(run + 1))
+   end function rows_before
+
+   !> The run with a row, or the last one before it.
+   pure integer function run_of(self, p, row)
+      class(panel_layout_type), intent(in) :: self
+      integer, intent(in) :: p, row              !! row: not before the panel's first column
+      integer :: high, middle
+
+      run_of = self%first_run(p)
+      high = self%first_run(p + 1) - 1
+      do while (high - run_of > 1)
+         middle = (run_of + high)/2
+         if (self%run_row(middle) <= row) then
+            run_of = middle
+         else
+            high = middle
+         end if
+      end do
+   end function run_of
+
    !> Address of entry (i, j) or (j, i), 0 if it is not stored.
    pure integer(int64) function address(self, i, j)
       class(panel_layout_type), intent(in) :: self
       integer, intent(in) :: i, j                !! equations
-      integer :: row, column, p, low, high, middle, place
+      integer :: row, column, p, run, place
 
       if (i == j) then
          address = self%diagonal_at(i)
@@ -206,18 +264,9 @@ contains
       column = self%number(min(i, j))
       if (row == 0 .or. column == 0) return
       p = self%panel_of(column)
-      low = self%first_run(p)
-      high = self%first_run(p + 1) - 1
-      do while (high - low > 1)
-         middle = (low + high)/2
-         if (self%run_row(middle) <= row) then
-            low = middle
-         else
-            high = middle
-         end if
-      end do
-      place = self%run_place(low) + row - self%run_row(low)
-      if (place >= self%run_place(low + 1)) return
+      run = self%run_of(p, row)
+      place = self%run_place(run) + row - self%run_row(run)
+      if (place >= self%run_place(run + 1)) return
       address = self%at(p) + int(self%width(p), int64)*place + column - self%column(p)
    end function address
 
@@ -226,7 +275,7 @@ contains
       class(panel_layout_type), intent(in) :: self
 
       bytes = (storage_size(self%number)*(size(self%number, kind=int64) + size(self%panel_of) &
-            + size(self%column) + size(self%source) + size(self%first_run) &
+            + size(self%column) + 3*size(self%source) + size(self%first_run) &
             + size(self%run_row) + size(self%run_place)) &
             + storage_size(self%at)*(size(self%at, kind=int64) + size(self%diagonal_at)))/8
    end function bytes

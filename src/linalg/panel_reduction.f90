@@ -2,11 +2,11 @@
 !> before it, in their order, then reduces its own columns. Threads take the panels in turn, so that
 !> the result does not depend on their number.
 module panel_reduction
-   use, intrinsic :: iso_c_binding, only: c_int
    use kinds, only: wp, int64
    use blas_interfaces, only: dtrsm
    use panel_layout, only: panel_layout_type
    use panel_kernels, only: subtract_product, reduce_block, scale_tail
+   use waiting, only: pass_turn, report
    implicit none
    private
 
@@ -14,25 +14,19 @@ module panel_reduction
 
    !> Products from which threads share the work.
    real(wp), parameter :: worth_threads = 3.0e6_wp
+   !> Most panels that a thread reduces together.
+   integer, parameter :: most_together = 4
    !> Mean length of the runs of rows from which products go straight to their place.
    integer, parameter :: long_run = 16
 
    !> How far the panels are.
    type :: progress_type
-      integer :: next = 0                        !! last panel that a thread has taken
+      integer :: next = 0                        !! groups of panels that threads have taken
       integer :: failed                          !! panel with a vanishing pivot, or past the last
       integer, allocatable :: done(:)            !! (n_panels) 1 when reduced
       real(wp), allocatable :: original(:)       !! (n_coupled) diagonal of A
       real(wp), allocatable :: pivots(:)         !! (n_coupled)
    end type progress_type
-
-   interface
-      function yield() bind(c, name='sched_yield') result(status)
-         import :: c_int
-         implicit none
-         integer(c_int) :: status
-      end function yield
-   end interface
 
 contains
 
@@ -45,7 +39,7 @@ contains
       real(wp), allocatable, intent(out) :: pivots(:)   !! (n_coupled)
       integer, intent(out) :: zero_pivot
       type(progress_type) :: progress
-      integer :: p
+      integer :: p, n_together
 
       allocate (progress%done(layout%n_panels), progress%pivots(layout%n_coupled))
       progress%done = 0
@@ -53,18 +47,32 @@ contains
       progress%failed = layout%n_panels + 1
       progress%original = pack(values(layout%diagonal_at), layout%number > 0)
       zero_pivot = 0
+      n_together = panels_together(layout)
       !$omp parallel if (is_worth_threads(layout)) private(p)
       do
          !$omp atomic capture
          progress%next = progress%next + 1
          p = progress%next
          !$omp end atomic
+         p = (p - 1)*n_together + 1
          if (p > layout%n_panels) exit
-         call reduce_panel(layout, p, values, tolerance, progress, zero_pivot)
+         call reduce_group(layout, p, min(p + n_together - 1, layout%n_panels), values, &
+               tolerance, progress, zero_pivot)
       end do
       !$omp end parallel
       call move_alloc(progress%pivots, pivots)
    end subroutine reduce_panels
+
+   !> Panels that a thread reduces together, so that those before are read less often: few enough
+   !> for the panels between to keep the other threads busy.
+   pure integer function panels_together(layout)
+      type(panel_layout_type), intent(in) :: layout
+      integer :: p
+      real(wp) :: sources
+
+      sources = sum([(real(p - layout%source(p), wp), p=1, layout%n_panels)])
+      panels_together = max(1, min(most_together, int(sources/max(1, layout%n_panels)/8.0_wp)))
+   end function panels_together
 
    !> Whether the work pays for starting threads.
    pure logical function is_worth_threads(layout)
@@ -79,7 +87,32 @@ contains
       is_worth_threads = work > worth_threads
    end function is_worth_threads
 
-   !> Products of the panels before, then the panel's own columns.
+   !> Products of the panels before the group, then the reduction of its own panels.
+   subroutine reduce_group(layout, first, last, values, tolerance, progress, zero_pivot)
+      type(panel_layout_type), intent(in) :: layout
+      integer, intent(in) :: first, last
+      real(wp), intent(inout) :: values(layout%n_entries)
+      real(wp), intent(in) :: tolerance
+      type(progress_type), intent(inout) :: progress
+      integer, intent(inout) :: zero_pivot
+      integer :: p, s
+
+      do s = minval(layout%source(first:last)), first - 1
+         if (.not. is_ready(progress, s, first)) return
+         do p = first, last
+            if (s >= layout%source(p)) call subtract_panel(layout, s, p, values, progress%pivots)
+         end do
+      end do
+      do p = first, last
+         do s = max(first, layout%source(p)), p - 1
+            call subtract_panel(layout, s, p, values, progress%pivots)
+         end do
+         call reduce_panel(layout, p, values, tolerance, progress, zero_pivot)
+         if (progress%done(p) == 0) return
+      end do
+   end subroutine reduce_group
+
+   !> Reduces the columns of a panel from which the products of others have been taken.
    subroutine reduce_panel(layout, p, values, tolerance, progress, zero_pivot)
       type(panel_layout_type), intent(in) :: layout
       integer, intent(in) :: p
@@ -87,13 +120,9 @@ contains
       real(wp), intent(in) :: tolerance
       type(progress_type), intent(inout) :: progress
       integer, intent(inout) :: zero_pivot
-      integer :: s, w, n_tail, failed, first
+      integer :: w, n_tail, failed, first
       integer(int64) :: at
 
-      do s = layout%source(p), p - 1
-         if (.not. is_ready(progress, s, p)) return
-         call subtract_panel(layout, s, p, values, progress%pivots)
-      end do
       w = layout%width(p)
       at = layout%at(p)
       first = layout%column(p)
@@ -115,18 +144,14 @@ contains
                values(at + int(w, int64)*w), w)
          call scale_tail(w, n_tail, values(at + int(w, int64)*w), progress%pivots(first))
       end if
-      !$omp flush
-      !$omp atomic write
-      progress%done(p) = 1
+      call report(progress%done(p), 1)
    end subroutine reduce_panel
 
    !> Waits for panel s; false if a panel before p has failed.
    logical function is_ready(progress, s, p)
       type(progress_type), intent(inout) :: progress
       integer, intent(in) :: s, p
-      integer, parameter :: patience = 2000
       integer :: state, failed, n
-      integer(c_int) :: status
 
       n = 0
       do
@@ -135,8 +160,7 @@ contains
          !$omp atomic read
          failed = progress%failed
          if (state == 1 .or. failed < p) exit
-         n = n + 1
-         if (n > patience) status = yield()
+         call pass_turn(n)
       end do
       !$omp flush
       is_ready = state == 1
@@ -154,14 +178,11 @@ contains
       integer(int64) :: at
 
       end_mark = layout%first_run(s + 1) - 1
-      run = layout%first_run(s)
-      do while (last_row(layout, run) < layout%column(p))
-         run = run + 1
-         if (run == end_mark) return
-      end do
-      start = layout%run_place(run) + max(0, layout%column(p) - layout%run_row(run))
-      n = rows_before(layout, run, end_mark, layout%column(p + 1)) - start
+      start = layout%rows_before(s, layout%column(p))
+      n = layout%rows_before(s, layout%column(p + 1)) - start
       if (n == 0) return
+      run = layout%run_of(s, layout%column(p))
+      if (layout%run_place(run + 1) <= start) run = run + 1
       w = layout%width(s)
       n_all = layout%n_rows(s) - start
       at = layout%at(s) + int(start, int64)*w
@@ -177,27 +198,6 @@ contains
          call subtract_scattered(layout, s, p, run, start, scaled, values)
       end if
    end subroutine subtract_panel
-
-   pure integer function last_row(layout, run)
-      type(panel_layout_type), intent(in) :: layout
-      integer, intent(in) :: run
-
-      last_row = layout%run_row(run) + layout%run_place(run + 1) - layout%run_place(run) - 1
-   end function last_row
-
-   !> Rows of a panel before a row, which is not above the given run.
-   pure integer function rows_before(layout, run, end_mark, row)
-      type(panel_layout_type), intent(in) :: layout
-      integer, intent(in) :: run, end_mark, row
-      integer :: r
-
-      r = run
-      do while (layout%run_row(r + 1) < row .and. r + 1 < end_mark)
-         r = r + 1
-      end do
-      rows_before = min(layout%run_place(r) + max(0, row - layout%run_row(r)), &
-            layout%run_place(r + 1))
-   end function rows_before
 
    !> One product a run of rows.
    subroutine subtract_in_place(layout, s, p, first_run, start, scaled, values)

@@ -5,7 +5,7 @@ module small_eigen
    implicit none
    private
 
-   public :: largest_eigenvalue, eigenvalue_bound
+   public :: largest_eigenvalue, has_larger_eigenvalue
 
 contains
 
@@ -28,28 +28,32 @@ contains
       if (info == 0) lambda = w(size(m))
    end function largest_eigenvalue
 
-   !> A bound on the same eigenvalue, K positive semidefinite, not far above it: the root of the sum
-   !> of eighth powers of all, from two squarings of M^-1/2 K M^-1/2.
-   pure function eigenvalue_bound(k, m) result(bound)
+   !> Whether K x = lambda diag(m) x has an eigenvalue over a limit, round-off (1e-12 of the limit)
+   !> apart: it has none if limit diag(m) - K is positive definite, which takes much less than the
+   !> eigenvalues to find out.
+   pure function has_larger_eigenvalue(k, m, limit) result(larger)
       real(wp), intent(in) :: k(:, :)      !! (n, n) symmetric
       real(wp), intent(in) :: m(:)         !! (n) positive
-      real(wp) :: bound
-      real(wp), parameter :: round_off = 1.0e-10_wp
-      real(wp) :: a(size(m), size(m)), b(size(m), size(m)), root(size(m)), trace
-      integer :: i
+      real(wp), intent(in) :: limit
+      logical :: larger
+      real(wp), parameter :: round_off = 1.0e-12_wp
+      real(wp) :: a(size(m), size(m)), factor
+      integer :: i, j, n
 
-      root = 1.0_wp/sqrt(m)
-      trace = 0.0_wp
-      do i = 1, size(m)
-         a(:, i) = k(:, i)*root*root(i)
-         trace = trace + a(i, i)
+      n = size(m)
+      a = -k
+      do i = 1, n
+         a(i, i) = a(i, i) + (1.0_wp + round_off)*limit*m(i)
       end do
-      bound = 0.0_wp
-      if (.not. trace > 0.0_wp) return
-      a = a/trace
-      b = matmul(a, a)
-      a = matmul(b, b)
-      bound = trace*(sum(a**2)**0.125_wp + round_off)
-   end function eigenvalue_bound
+      larger = .true.
+      do j = 1, n
+         if (.not. a(j, j) > 0.0_wp) return
+         do i = j + 1, n
+            factor = a(i, j)/a(j, j)
+            a(i:, i) = a(i:, i) - factor*a(i:, j)
+         end do
+      end do
+      larger = .false.
+   end function has_larger_eigenvalue
 
 end module small_eigen

@@ -15,8 +15,8 @@ module simulation
    use command_line, only: command_type, version_text
    use run_log, only: log_type, open_log, close_log, say, note, write_status
    use progress, only: progress_type, start_progress, show_progress, end_progress
-   use scene_setup, only: simulation_type, build_scene, begin_step, initial_motion, &
-         count_increments, last_increment, count_events
+   use scene_setup, only: simulation_type, build_scene, begin_step, initial_motion
+   use increment_count, only: count_increments, last_increment
    use step_start, only: start_step
    use increments, only: control_type, start_control, take_increment, take_automatic_increment
    use frequency_run, only: run_frequency_step
@@ -28,6 +28,8 @@ module simulation
 
    !> Results are brought to the disk at least this often, seconds.
    real(wp), parameter :: flush_interval = 5.0_wp
+   !> Before the first increment of a run whose start-up took longer they are there too, seconds.
+   real(wp), parameter :: quick_start = 0.5_wp
 
    !> What a run writes to.
    type :: output_type
@@ -85,6 +87,7 @@ contains
       real(wp) :: started
 
       started = seconds_now()
+      output%last_flush = started
       call read_deck(simulation%model, command%deck, command%definitions, error)
       if (allocated(error)) return
       call prepare(simulation, output%log, .false., error)
@@ -193,7 +196,7 @@ contains
       call record_increment(output%results, simulation%scene, simulation%contact, &
             simulation%motion, simulation%model%steps(1)%requests, 0, .false., error)
       if (allocated(error)) return
-      call flush_results(output%results, error)
+      if (seconds_now() - output%last_flush > quick_start) call flush_now(output, error)
    end subroutine record_start
 
    !> Increments of one size, the last one shorter where they do not fill the step.
@@ -302,6 +305,20 @@ contains
       end associate
    end subroutine finish_increment
 
+   !> Adds the events of the increment at hand to the count of the run; sees how many rows touch.
+   pure subroutine count_events(self)
+      type(simulation_type), intent(inout) :: self
+      integer :: i
+
+      do i = 1, self%scene%n_events
+         associate (kind => self%scene%events(i)%kind)
+            self%n_events(kind) = self%n_events(kind) + 1
+         end associate
+      end do
+      self%most_touching = max(self%most_touching, &
+            count(self%motion%touching .or. self%motion%lambda > 0.0_wp))
+   end subroutine count_events
+
    !> How Newton's method went in an increment (its last solution, where it has several).
    subroutine note_residuals(scene, increment, log)
       type(scene_type), intent(in) :: scene
@@ -356,12 +373,16 @@ contains
    subroutine flush_now_and_then(output, error)
       type(output_type), intent(inout) :: output
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: now
 
-      now = seconds_now()
-      if (now - output%last_flush < flush_interval) return
-      call flush_results(output%results, error)
-      output%last_flush = now
+      if (seconds_now() - output%last_flush >= flush_interval) call flush_now(output, error)
    end subroutine flush_now_and_then
+
+   subroutine flush_now(output, error)
+      type(output_type), intent(inout) :: output
+      type(error_type), allocatable, intent(out) :: error
+
+      call flush_results(output%results, error)
+      output%last_flush = seconds_now()
+   end subroutine flush_now
 
 end module simulation
