@@ -9,7 +9,10 @@ module element_chunks
    implicit none
    private
 
-   public :: chunks_type, new_chunks, add_forces_of_chunks
+   public :: chunks_type, new_chunks, add_forces_of_chunks, fewest_for_threads
+
+   !> Nodes of all elements, counted in each, from which on threads are worth their waking up.
+   integer, parameter :: fewest_for_threads = 12000
 
    !> Nodes of chunk c are first_node(c) to first_node(c + 1) - 1 of the lists, its elements
    !> first_element(c) to first_element(c + 1) - 1 of the order in which the group works.
@@ -110,7 +113,7 @@ contains
       real(wp) :: part(2, self%n), slots(self%first_slot(size(self%first_slot)) - 1)
       integer :: c, i
 
-      !$omp parallel if (self%n > 1)
+      !$omp parallel if (size(self%ien) > fewest_for_threads)
       !$omp do schedule(dynamic)
       do c = 1, self%n
          call add_chunk(self, element, c, d, history, force, updated, slots, part(:, c))

@@ -5,8 +5,9 @@ module solid_factory
    use errors, only: error_type
    use text, only: to_text
    use places, only: fail_at
+   use congruence, only: find_classes
    use model, only: model_type
-   use mesh, only: solid_plane, solid_reduced, solid_topology, quad4, plane_stress
+   use mesh, only: solid_plane, solid_reduced, solid_topology, quad4, plane_stress, axisymmetric
    use properties, only: section_type, material_type
    use element_interface, only: element_type
    use solid, only: solid_type, new_solid, solid_material_type
@@ -32,6 +33,7 @@ contains
       type(solid_shape_type) :: shape
       type(section_type) :: section
       real(wp), allocatable :: x(:, :, :)
+      integer, allocatable :: class(:), first(:)
       integer :: i
 
       section = model%sections(model%elements%section(member(1)))
@@ -39,7 +41,10 @@ contains
       allocate (x(2, size(ien, 1), size(ien, 2)))
       do i = 1, size(member)
          x(:, :, i) = model%nodes%x(1:2, ien(:, i))
-         call check_geometry(shape, x(:, :, i), model, member(i), error)
+      end do
+      call find_classes(x, [shape%plane /= axisymmetric, .true.], class, first)
+      do i = 1, size(first)
+         call check_geometry(shape, x(:, :, first(i)), model, member(first(i)), error)
          if (allocated(error)) return
       end do
       allocate (made)

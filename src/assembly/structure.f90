@@ -133,12 +133,13 @@ contains
       real(wp), allocatable :: k(:, :), m(:, :), c(:, :)
       logical :: entry
 
-      carried = .false.
+      carried = self%lumped_mass > 0.0_wp
       do g = 1, size(self%groups)
          associate (group => self%groups(g))
             i = size(group%lm, 1)
             allocate (k(i, i), m(i, i), c(i, i))
             do e = 1, size(group%member)
+               if (all(group%lm(:, e) == 0 .or. carried(max(1, group%lm(:, e))))) cycle
                call group%element%largest_stiffness(e, k)
                call group%element%damping(e, c)
                call group_mass(group, e, group%lumped, m)

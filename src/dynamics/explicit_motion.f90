@@ -18,6 +18,9 @@ module explicit_motion
    !> Freedoms whose energies are added up at once: sums do not depend on the number of threads.
    integer, parameter :: run_length = 4096
 
+   !> Freedoms from which on threads are worth their waking up.
+   integer, parameter :: fewest_for_threads = 16384
+
    !> What stays the same over the increments of a step, and work space.
    type :: explicit_motion_type
       logical :: ready = .false.                 !! made for the step at hand
@@ -156,7 +159,7 @@ contains
       half = dt**2/2.0_wp
       rest = dt*(1.0_wp - gamma)
       associate (d => state%d, v => state%v, a => state%a)
-         !$omp parallel do simd schedule(static)
+         !$omp parallel do simd schedule(static) if (size(force) > fewest_for_threads)
          do i = 1, size(force)
             d(i) = d(i) + dt*v(i) + half*a(i)
             v(i) = v(i) + rest*a(i)
@@ -175,7 +178,7 @@ contains
       integer :: i, j
 
       associate (v => state%v, a => state%a)
-         !$omp parallel do schedule(static) private(i, sum_of_run)
+         !$omp parallel do schedule(static) private(i, sum_of_run) if (size(part) > 4)
          do j = 1, size(part)
             sum_of_run = 0.0_wp
             !$omp simd reduction(+:sum_of_run)

@@ -3,23 +3,21 @@
 !> its radius along x and its axis along y, and stands for the full circumference.
 module solid
    use kinds, only: wp
-   use elastic, only: plane_stress, axisymmetric, elastic_matrix, thickness_strain
-   use element_interface, only: element_type, recovered_stress, recovered_strain, &
-         recovered_peeq, recovered_energy
    use congruence, only: find_classes
+   use elastic, only: plane_stress, axisymmetric, elastic_matrix, thickness_strain
    use element_blocks, only: new_blocks
+   use element_interface, only: recovered_stress, recovered_strain, recovered_peeq, &
+         recovered_energy
    use j2_plastic, only: j2_type, new_j2, n_state, state_peeq, state_work
-   use plane_freedoms, only: in_plane, on_freedoms, add_in_direction, spread_in_plane, outer
-   use point_fit, only: point_extrapolation
-   use quadrature, only: stiffness_rule
+   use plane_freedoms, only: in_plane, add_in_direction, spread_in_plane, outer
+   use plastic_forces, only: find_plastic_forces, add_hourglass_forces
+   use solid_body, only: solid_body_type
    use solid_geometry, only: solid_shape_type
-   use solid_integrals, only: mass_matrix, lumped_mass, volume_shares, centrifugal_force, &
-         edge_force
-   use solid_material, only: solid_material_type, hourglass_share
+   use solid_integrals, only: lumped_masses
    use solid_kinematics, only: kinematics_type, new_kinematics
+   use solid_material, only: solid_material_type, hourglass_share
    use stored_stiffness, only: stored_stiffness_type, new_stored_stiffness, keep_stiffness, &
          get_stiffness, add_block_forces
-   use topology, only: count_corners
    implicit none
    private
 
@@ -31,30 +29,18 @@ module solid
    !> Solids of one section. B-bar (mean dilatation, of four-node quadrilaterals in plane strain and
    !> axisymmetry) is off unless the shape asks for it. A history is n_state variables a point,
    !> point after point; an elastic solid has none.
-   type, extends(element_type) :: solid_type
-      type(solid_shape_type) :: shape
-      type(solid_material_type) :: material
-      integer, allocatable :: class(:)              !! (n_elements) of congruent elements
+   type, extends(solid_body_type) :: solid_type
       type(kinematics_type) :: kinematics           !! of every class
       type(stored_stiffness_type) :: stored         !! of an elastic solid
       type(j2_type) :: law                          !! of a plastic solid
       real(wp) :: elastic(4, 4) = 0.0_wp
-      real(wp), allocatable :: x(:, :, :)           !! (2, n_nodes, n_elements)
-      logical :: lumped = .true.                    !! mass used in Rayleigh damping
    contains
-      procedure :: uses
       procedure :: stiffness
-      procedure :: damping
-      procedure :: mass
       procedure :: internal_force
       procedure :: add_chunk_forces
       procedure :: strain_energy
       procedure :: plastic_work
       procedure :: recover
-      procedure :: extrapolation
-      procedure :: body_load
-      procedure :: edge_load
-      procedure :: centrifugal_load
    end type solid_type
 
 contains
@@ -67,6 +53,7 @@ contains
       type(solid_material_type), intent(in) :: material
       logical, intent(in) :: lumped                 !! the group's mass matrix
       integer, allocatable :: first(:)
+      integer :: i
 
       self%shape = shape
       self%material = material
@@ -78,6 +65,7 @@ contains
       ! a shift along the radius changes an axisymmetric element
       call find_classes(x, [shape%plane /= axisymmetric, .true.], self%class, first)
       call new_kinematics(self%kinematics, shape, x(:, :, first))
+      self%share = lumped_masses(shape, x(:, :, first))
       self%n_points = size(self%kinematics%volume, 1)
       self%n_stresses = 4
       ! 1/9 for a square of four nodes, a little less for distorted and axisymmetric elements
@@ -88,6 +76,7 @@ contains
          call store_stiffness(self, size(first))
          return
       end if
+      call new_blocks(self%blocks, [(1, i=1, self%n_elements)])
       self%n_history = n_state*self%n_points
       call new_j2(self%law, [material%young, material%poisson], shape%plane, material%kinematic, &
             material%hardening(1, :), material%hardening(2, :))
@@ -112,16 +101,6 @@ contains
                merge(i, self%class(i), shared), self%elastic, hourglass_stiffness(self)))
       end do
    end subroutine store_stiffness
-
-   !> Directions 1 and 2 of every node.
-   pure function uses(self, e) result(used)
-      class(solid_type), intent(in) :: self
-      integer, intent(in) :: e
-      logical :: used(3*self%n_nodes)
-
-      used = .true.
-      used(3::3) = .false.
-   end function uses
 
    pure subroutine stiffness(self, e, d, history, matrix)
       class(solid_type), intent(in) :: self
@@ -155,47 +134,6 @@ contains
       end do
    end subroutine stiffness
 
-   !> Rayleigh damping alpha M + beta K of the elastic solid.
-   pure subroutine damping(self, e, matrix)
-      class(solid_type), intent(in) :: self
-      integer, intent(in) :: e
-      real(wp), intent(out) :: matrix(:, :)
-      real(wp) :: m(size(matrix, 1), size(matrix, 1))
-
-      matrix = 0.0_wp
-      if (abs(self%material%damping_beta) > 0.0_wp) then
-         call self%largest_stiffness(e, matrix)
-         matrix = self%material%damping_beta*matrix
-      end if
-      if (abs(self%material%damping_alpha) > 0.0_wp) then
-         call self%mass(e, self%lumped, m)
-         matrix = matrix + self%material%damping_alpha*m
-      end if
-   end subroutine damping
-
-   pure subroutine mass(self, e, lumped, matrix)
-      class(solid_type), intent(in) :: self
-      integer, intent(in) :: e
-      logical, intent(in) :: lumped
-      real(wp), intent(out) :: matrix(:, :)
-      real(wp) :: share(self%n_nodes), part(self%n_nodes, self%n_nodes)
-      integer :: i
-
-      if (lumped) then
-         part = 0.0_wp
-         share = lumped_mass(self%shape, self%x(:, :, e))
-         do i = 1, self%n_nodes
-            part(i, i) = share(i)
-         end do
-      else
-         part = mass_matrix(self%shape, self%x(:, :, e))
-      end if
-      matrix = 0.0_wp
-      do i = 1, 2
-         call add_in_direction(i, self%material%density*part, matrix)
-      end do
-   end subroutine mass
-
    pure subroutine internal_force(self, d, history, force, updated)
       class(solid_type), intent(in) :: self
       real(wp), intent(in) :: d(:, :), history(:, :)
@@ -223,6 +161,10 @@ contains
       real(wp), intent(inout) :: energy(2)
       integer :: b, i, from, to
 
+      if (.not. self%linear) then
+         call add_plastic_chunk(self, chunk, ien, u, history, force, updated, energy)
+         return
+      end if
       associate (blocks => self%blocks)
          from = 1
          do b = blocks%chunk_first(chunk), blocks%chunk_first(chunk + 1) - 1
@@ -234,6 +176,31 @@ contains
          end do
       end associate
    end subroutine add_chunk_forces
+
+   pure subroutine add_plastic_chunk(self, chunk, ien, u, history, force, updated, energy)
+      class(solid_type), intent(in) :: self
+      integer, intent(in) :: chunk
+      integer, intent(in), contiguous :: ien(:, :)
+      real(wp), intent(in), contiguous :: u(:, :)
+      real(wp), intent(in) :: history(self%n_history, self%n_elements)
+      real(wp), intent(inout), contiguous :: force(:, :)
+      real(wp), intent(inout) :: updated(self%n_history, self%n_elements)
+      real(wp), intent(inout) :: energy(2)
+      real(wp) :: local(2, self%n_nodes), f(2, self%n_nodes)
+      integer :: k, e
+
+      do k = 1, size(ien, 2)
+         ! these blocks have the elements in their own order
+         e = self%blocks%first(self%blocks%chunk_first(chunk)) + k - 1
+         local = u(:, ien(:, k))
+         call find_plastic_forces(self%law, self%kinematics, self%class(e), local, history(:, e), &
+               updated(:, e), f, energy)
+         if (size(self%kinematics%hourglass, 2) > 0) call add_hourglass_forces( &
+               hourglass_stiffness(self), self%kinematics%hourglass(:, self%class(e)), local, f, &
+               energy(1))
+         force(:, ien(:, k)) = force(:, ien(:, k)) + f
+      end do
+   end subroutine add_plastic_chunk
 
    !> Forces of one element and its history at displacements u.
    pure subroutine element_force(self, e, u, history, force, updated)
@@ -324,49 +291,6 @@ contains
          values(recovered_energy, p) = energy_density(self, strain - plastic)
       end do
    end subroutine recover
-
-   pure function extrapolation(self) result(matrix)
-      class(solid_type), intent(in) :: self
-      real(wp) :: matrix(self%n_nodes, self%n_points)
-
-      matrix = point_extrapolation(self%shape%topology, &
-            stiffness_rule(self%shape%topology, self%shape%reduced))
-   end function extrapolation
-
-   pure subroutine body_load(self, e, body, load)
-      class(solid_type), intent(in) :: self
-      integer, intent(in) :: e
-      real(wp), intent(in) :: body(3)
-      real(wp), intent(out) :: load(:)
-      real(wp) :: share(self%n_nodes)
-
-      share = volume_shares(self%shape, self%x(:, :, e))
-      load = 0.0_wp
-      load(1::3) = body(1)*share
-      load(2::3) = body(2)*share
-   end subroutine body_load
-
-   pure subroutine edge_load(self, e, edge, pressure, load, exists)
-      class(solid_type), intent(in) :: self
-      integer, intent(in) :: e, edge
-      real(wp), intent(in) :: pressure
-      real(wp), intent(out) :: load(:)
-      logical, intent(out) :: exists
-
-      load = 0.0_wp
-      exists = edge >= 1 .and. edge <= count_corners(self%shape%topology)
-      if (exists) load = on_freedoms(pressure*edge_force(self%shape, self%x(:, :, e), edge))
-   end subroutine edge_load
-
-   pure subroutine centrifugal_load(self, e, omega_squared, point, axis, load)
-      class(solid_type), intent(in) :: self
-      integer, intent(in) :: e
-      real(wp), intent(in) :: omega_squared, point(3), axis(3)
-      real(wp), intent(out) :: load(:)
-
-      load = on_freedoms(self%material%density*omega_squared &
-            *centrifugal_force(self%shape, self%x(:, :, e), point, axis))
-   end subroutine centrifugal_load
 
    pure function hourglass_stiffness(self) result(factor)
       class(solid_type), intent(in) :: self

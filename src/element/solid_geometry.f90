@@ -64,8 +64,7 @@ contains
       real(wp), intent(in) :: x(:, :)           !! (2, n_nodes)
       integer :: fault
       type(rule_type) :: rule
-      real(wp), allocatable :: det_j(:), smallest(:)
-      real(wp) :: extent
+      real(wp) :: extent, smallest, largest, least
 
       fault = fault_none
       extent = maxval(maxval(x, 2) - minval(x, 2))
@@ -75,16 +74,20 @@ contains
          fault = fault_radius
       end if
       if (fault /= fault_none) return
+      smallest = huge(smallest)
+      largest = -huge(largest)
       rule = stiffness_rule(shape%topology, shape%reduced)
-      det_j = jacobians(shape%topology, x, rule%point)
+      call find_jacobians(shape%topology, x, rule%point, smallest, largest)
       rule = mass_rule(shape%topology)
-      det_j = [det_j, jacobians(shape%topology, x, rule%point)]
-      smallest = [minval(det_j)]
-      if (shape%topology == quad4) smallest = [smallest, &
-            minval(jacobians(quad4, x, node_coordinates(quad4))) + 2.0e-10_wp*extent**2]
-      if (minval(smallest) > 1.0e-10_wp*extent**2) return
+      call find_jacobians(shape%topology, x, rule%point, smallest, largest)
+      if (shape%topology == quad4) then
+         least = huge(least)
+         call find_jacobians(quad4, x, node_coordinates(quad4), least)
+         smallest = min(smallest, least + 2.0e-10_wp*extent**2)
+      end if
+      if (smallest > 1.0e-10_wp*extent**2) return
       fault = fault_distorted
-      if (maxval(det_j) < 0.0_wp) fault = fault_clockwise
+      if (largest < 0.0_wp) fault = fault_clockwise
    end function find_fault
 
    !> Distance between the two nodes that are closest.
@@ -101,17 +104,23 @@ contains
       end do
    end function closest
 
-   pure function jacobians(topology, x, xi) result(det_j)
+   !> Lowers and raises the bounds of the Jacobians met by those at some points.
+   pure subroutine find_jacobians(topology, x, xi, smallest, largest)
       integer, intent(in) :: topology
       real(wp), intent(in) :: x(:, :)
       real(wp), intent(in) :: xi(:, :)          !! (2, points)
-      real(wp) :: det_j(size(xi, 2))
-      real(wp) :: unused(2, size(x, 2))
+      real(wp), intent(inout) :: smallest
+      real(wp), intent(inout), optional :: largest
+      real(wp) :: dn(2, size(x, 2)), det_j
       integer :: p
 
       do p = 1, size(xi, 2)
-         call map_derivatives(topology, x, xi(:, p), unused, det_j(p))
+         dn = shape_derivatives(topology, xi(:, p))
+         det_j = dot_product(dn(1, :), x(1, :))*dot_product(dn(2, :), x(2, :)) &
+               - dot_product(dn(1, :), x(2, :))*dot_product(dn(2, :), x(1, :))
+         smallest = min(smallest, det_j)
+         if (present(largest)) largest = max(largest, det_j)
       end do
-   end function jacobians
+   end subroutine find_jacobians
 
 end module solid_geometry

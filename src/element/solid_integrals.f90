@@ -6,11 +6,11 @@ module solid_integrals
    use quadrature, only: rule_type, mass_rule, stiffness_rule, line_rule
    use solid_geometry, only: solid_shape_type, map_derivatives, depth_at
    use topology, only: quad4, quad8, count_nodes, count_corners, edge_nodes, shape_functions, &
-         line_functions, line_derivatives
+         shape_derivatives, line_functions, line_derivatives
    implicit none
    private
 
-   public :: mass_matrix, lumped_mass, volume_shares, centrifugal_force, edge_force
+   public :: mass_matrix, lumped_mass, lumped_masses, volume_shares, centrifugal_force, edge_force
 
 contains
 
@@ -47,17 +47,49 @@ contains
       type(solid_shape_type), intent(in) :: shape
       real(wp), intent(in) :: x(:, :)           !! (2, n_nodes)
       real(wp) :: share(size(x, 2))
-      real(wp) :: matrix(size(x, 2), size(x, 2))
-      integer :: i
+      real(wp) :: shares(size(x, 2), 1)
 
-      matrix = mass_matrix(shape, x)
-      if (shape%topology <= quad4) then
-         share = sum(matrix, 1)
-      else
-         share = [(matrix(i, i), i=1, size(share))]
-         share = share*(sum(matrix)/sum(share))
-      end if
+      shares = lumped_masses(shape, reshape(x, [2, size(x, 2), 1]))
+      share = shares(:, 1)
    end function lumped_mass
+
+   !> The same of many elements, (n_nodes, elements).
+   pure function lumped_masses(shape, x) result(share)
+      type(solid_shape_type), intent(in) :: shape
+      real(wp), intent(in) :: x(:, :, :)        !! (2, n_nodes, elements)
+      real(wp) :: share(size(x, 2), size(x, 3))
+      type(rule_type) :: rule
+      real(wp), allocatable :: n(:, :), dn(:, :, :)
+      real(wp) :: volume, total
+      integer :: e, p
+
+      rule = mass_rule(shape%topology)
+      allocate (n(size(x, 2), rule%n), dn(2, size(x, 2), rule%n))
+      do p = 1, rule%n
+         n(:, p) = shape_functions(shape%topology, rule%point(:, p))
+         dn(:, :, p) = shape_derivatives(shape%topology, rule%point(:, p))
+      end do
+      do e = 1, size(x, 3)
+         share(:, e) = 0.0_wp
+         total = 0.0_wp
+         do p = 1, rule%n
+            volume = rule%weight(p)*jacobian(dn(:, :, p), x(:, :, e)) &
+                  *depth_at(shape, dot_product(n(:, p), x(1, :, e)))
+            total = total + volume
+            if (shape%topology <= quad4) share(:, e) = share(:, e) + volume*n(:, p)
+            if (shape%topology > quad4) share(:, e) = share(:, e) + volume*n(:, p)**2
+         end do
+         if (shape%topology > quad4) share(:, e) = share(:, e)*(total/sum(share(:, e)))
+      end do
+   end function lumped_masses
+
+   pure function jacobian(dn, x) result(det_j)
+      real(wp), intent(in) :: dn(:, :), x(:, :)   !! (2, n_nodes)
+      real(wp) :: det_j
+
+      det_j = dot_product(dn(1, :), x(1, :))*dot_product(dn(2, :), x(2, :)) &
+            - dot_product(dn(1, :), x(2, :))*dot_product(dn(2, :), x(1, :))
+   end function jacobian
 
    !> Integral of N over the volume: what a force per volume gives the nodes.
    pure function volume_shares(shape, x) result(share)

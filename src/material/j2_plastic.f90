@@ -54,30 +54,41 @@ contains
       self%y = y
    end subroutine new_j2
 
-   !> Stress, state and tangent after going from a state to a strain. In plane stress strain 33 is
-   !> not looked at. The work is the trapezoid (old stress + new stress)/2 : plastic strain made,
-   !> so that with the elastic energy it adds up to the trapezoid of stress : strain exactly.
+   !> Stress, state and, if asked for, tangent after going from a state to a strain. In plane stress
+   !> strain 33 is not looked at. The work is the trapezoid (old stress + new stress)/2 : plastic
+   !> strain made, so that with the elastic energy it adds up to the trapezoid of stress : strain
+   !> exactly.
    pure subroutine update(self, strain, state, stress, updated, tangent)
       class(j2_type), intent(in) :: self
       real(wp), intent(in) :: strain(4)
       real(wp), intent(in) :: state(n_state)
       real(wp), intent(out) :: stress(4)
       real(wp), intent(out) :: updated(n_state)
-      real(wp), intent(out) :: tangent(4, 4)
-      real(wp) :: total(4), made(4)
+      real(wp), intent(out), optional :: tangent(4, 4)
+      real(wp) :: total(4), made(4), unused(4, 4)
+      logical :: elastic
 
-      updated = state
-      total = strain
       if (self%plane == plane_stress) then
+         total(1:2) = strain(1:2)
          total(3) = state(3) + thickness_strain(self%poisson, strain - state(1:4))
+         total(4) = strain(4)
+         call try_elastic(self, total, state, stress, elastic)
+         if (elastic) stress(3) = 0.0_wp
+      else
+         call try_elastic(self, strain, state, stress, elastic)
       end if
-      if (.not. yields(self, total, state)) then
-         stress = matmul(self%elastic, total - state(1:4))
-         tangent = self%elastic
-      else if (self%plane == plane_stress) then
+      updated(:state_work) = state(:state_work)
+      if (elastic) then
+         updated(state_stress:) = stress
+         if (present(tangent)) tangent = self%elastic
+         return
+      end if
+      if (self%plane /= plane_stress) then
+         call return_radially(self, strain, state, stress, updated, tangent)
+      else if (present(tangent)) then
          call return_plane(self, total, state, stress, updated, tangent)
       else
-         call return_radially(self, total, state, stress, updated, tangent)
+         call return_plane(self, total, state, stress, updated, unused)
       end if
       made = updated(1:4) - state(1:4)
       updated(state_work) = state(state_work) &
@@ -85,27 +96,46 @@ contains
       updated(state_stress:) = stress
    end subroutine update
 
-   !> Whether the elastic stress at a strain lies outside of the yield surface.
-   pure function yields(self, strain, state) result(outside)
+   !> The elastic stress at a strain, and whether it is within the yield surface. In scalars: most
+   !> points of most steps need no more than this.
+   pure subroutine try_elastic(self, strain, state, stress, elastic)
       type(j2_type), intent(in) :: self
       real(wp), intent(in) :: strain(4), state(n_state)
-      logical :: outside
-      real(wp) :: size
+      real(wp), intent(out) :: stress(4)
+      logical, intent(out) :: elastic
+      real(wp) :: e1, e2, e3, sum_e, s1, s2, s3, s4, size, squared
 
-      size = surface_size(self, state(state_peeq))
-      outside = trial_size(relative_deviator(self, strain, state)) > size*(1.0_wp + 1.0e-13_wp)
-   end function yields
+      e1 = strain(1) - state(1)
+      e2 = strain(2) - state(2)
+      e3 = strain(3) - state(3)
+      sum_e = e1 + e2 + e3
+      s1 = 2.0_wp*self%shear*(e1 - sum_e/3.0_wp)
+      s2 = 2.0_wp*self%shear*(e2 - sum_e/3.0_wp)
+      s3 = 2.0_wp*self%shear*(e3 - sum_e/3.0_wp)
+      s4 = self%shear*(strain(4) - state(4))
+      squared = (s1 - state(state_back))**2 + (s2 - state(state_back + 1))**2 &
+            + (s3 - state(state_back + 2))**2 + 2.0_wp*(s4 - state(state_back + 3))**2
+      size = surface_size(self, state(state_peeq))*(1.0_wp + 1.0e-13_wp)
+      elastic = 1.5_wp*squared <= size**2
+      stress(1) = s1 + self%bulk*sum_e
+      stress(2) = s2 + self%bulk*sum_e
+      stress(3) = s3 + self%bulk*sum_e
+      stress(4) = s4
+   end subroutine try_elastic
 
    !> Deviator of the elastic stress at a strain, less the back stress.
    pure function relative_deviator(self, strain, state) result(xi)
       type(j2_type), intent(in) :: self
       real(wp), intent(in) :: strain(4), state(n_state)
       real(wp) :: xi(4)
+      real(wp) :: e(3), third
 
-      xi = strain - state(1:4)
-      xi(1:3) = 2.0_wp*self%shear*(xi(1:3) - sum(xi(1:3))/3.0_wp)
-      xi(4) = self%shear*xi(4)
-      xi = xi - state(state_back:state_back + 3)
+      e = strain(1:3) - state(1:3)
+      third = (e(1) + e(2) + e(3))/3.0_wp
+      xi(1) = 2.0_wp*self%shear*(e(1) - third) - state(state_back)
+      xi(2) = 2.0_wp*self%shear*(e(2) - third) - state(state_back + 1)
+      xi(3) = 2.0_wp*self%shear*(e(3) - third) - state(state_back + 2)
+      xi(4) = self%shear*(strain(4) - state(4)) - state(state_back + 3)
    end function relative_deviator
 
    !> von Mises stress of a deviator.
@@ -182,7 +212,7 @@ contains
       real(wp), intent(in) :: strain(4), state(n_state)
       real(wp), intent(out) :: stress(4)
       real(wp), intent(inout) :: updated(n_state)
-      real(wp), intent(out) :: tangent(4, 4)
+      real(wp), intent(out), optional :: tangent(4, 4)
       real(wp) :: xi(4), q, normal(4), growth, hardening, h
       real(wp), parameter :: root = sqrt(1.5_wp)
 
@@ -199,7 +229,8 @@ contains
       updated(state_peeq) = state(state_peeq) + growth
       stress = xi + state(state_back:state_back + 3) - 2.0_wp*self%shear*root*growth*normal
       stress(1:3) = stress(1:3) + self%bulk*sum(strain(1:3) - state(1:3))
-      tangent = consistent_tangent(self, normal, 3.0_wp*self%shear*growth/q, h)
+      if (present(tangent)) tangent = consistent_tangent(self, normal, &
+            3.0_wp*self%shear*growth/q, h)
    end subroutine return_radially
 
    !> K 1 1t + 2 G theta I_dev - 2 G (1/(1 + h/3G) - 1 + theta) n nt, theta = 1 - ratio.
@@ -264,14 +295,14 @@ contains
       real(wp), intent(out) :: stress(4)
       real(wp), intent(inout) :: updated(n_state)
       real(wp), intent(out) :: tangent(4, 4)
+      logical :: elastic
 
-      if (yields(self, strain, state)) then
+      call try_elastic(self, strain, state, stress, elastic)
+      if (.not. elastic) then
          call return_radially(self, strain, state, stress, updated, tangent)
          return
       end if
       updated = state
-      stress = relative_deviator(self, strain, state) + state(state_back:state_back + 3)
-      stress(1:3) = stress(1:3) + self%bulk*sum(strain(1:3) - state(1:3))
       tangent = consistent_tangent(self, [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], 0.0_wp, 0.0_wp)
    end subroutine return_full
 

