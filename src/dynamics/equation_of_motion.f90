@@ -4,7 +4,7 @@ module equation_of_motion
    use kinds, only: wp
    use errors, only: error_type
    use mesh, only: scheme_implicit, scheme_explicit
-   use skyline_matrix, only: profile_type
+   use skyline_matrix, only: profile_type, new_profile
    use dof_map, only: reduce, expand, follow_constraints
    use structure, only: structure_type, elastic_force, damping_force, inertia_force
    use external_load, only: load_set_type, load_at
@@ -198,11 +198,19 @@ contains
       type(system_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error
       real(wp) :: d(self%structure%map%n_freedoms), history(self%structure%n_history)
+      type(profile_type) :: diagonal
 
       d = 0.0_wp
       history = 0.0_wp
-      call self%matrices%prepare(self%structure, self%profile, d, history, &
-            [1.0_wp, 0.0_wp, 0.0_wp], error)
+      if (self%structure%has_consistent_mass .or. size(self%structure%map%dependent) > 0) then
+         call self%matrices%prepare(self%structure, self%profile, d, history, &
+               [1.0_wp, 0.0_wp, 0.0_wp], error)
+      else
+         ! lumped mass couples nothing
+         call new_profile(diagonal, self%profile%n)
+         call self%matrices%prepare(self%structure, diagonal, d, history, &
+               [1.0_wp, 0.0_wp, 0.0_wp], error)
+      end if
    end subroutine prepare_mass
 
    !> M^-1 force on freedoms, nothing on massless ones. `prepare_mass` comes first.
