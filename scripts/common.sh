@@ -79,6 +79,7 @@ install_packages() {
    want - "$(blas_package)"
    want - liblapack-dev
    want - libarpack2-dev
+   want - libmumps-seq-dev
    want python3 python3
    python3 -c 'import venv, ensurepip' 2>/dev/null || missing="$missing python3-venv"
    for package in "$@"; do

@@ -1,12 +1,15 @@
-!> carom: reads the command, runs it, reports an error and stops with its status.
+!> carom: reads the command, runs it, reports an error and stops with its status. Of several ranks
+!> the first does so, the others help it to solve.
 program carom
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
    use, intrinsic :: iso_c_binding, only: c_int
-   use errors, only: error_type
+   use errors, only: error_type, status_done
    use command_line, only: command_type, read_command, usage_text, version_text, &
          command_run, command_check, command_version
    use simulation, only: run_deck, check_deck
    use threads, only: set_threads
+   use parallel_ranks, only: start_ranks, end_ranks, my_rank
+   use mumps_solver, only: serve_rank_zero, dismiss_ranks
    implicit none
 
    interface
@@ -19,8 +22,16 @@ program carom
 
    type(command_type) :: command
    type(error_type), allocatable :: error
+   integer :: status
 
+   call start_ranks()
    call read_command(command, error)
+   if (my_rank() > 0) then
+      call set_threads(command%threads)
+      call serve_rank_zero(status)
+      call end_ranks()
+      call exit_process(int(status, c_int))
+   end if
    if (.not. allocated(error)) then
       select case (command%kind)
       case (command_run)
@@ -34,8 +45,12 @@ program carom
          write (output_unit, '(a)') usage_text()
       end select
    end if
+   status = status_done
    if (allocated(error)) then
       write (error_unit, '(a)') 'error: '//error%message
-      call exit_process(int(error%status, c_int))
+      status = error%status
    end if
+   call dismiss_ranks(status)
+   call end_ranks()
+   if (status /= status_done) call exit_process(int(status, c_int))
 end program carom

@@ -11,7 +11,7 @@ module effective_matrix
    private
 
    public :: find_profile, assemble_effective, assemble_sum, mark_implicit
-   public :: couples_equations, equations_of
+   public :: couples_equations, equations_of, has_implicit_matrix
 
 contains
 

@@ -3,7 +3,8 @@ module step_reader
    use kinds, only: wp
    use errors, only: error_type
    use places, only: source_type, fail_at
-   use steps, only: step_type, procedure_static, procedure_dynamic, procedure_frequency
+   use steps, only: step_type, procedure_static, procedure_dynamic, procedure_frequency, &
+         solver_mumps
    use mesh, only: element_mass, element_gap, element_line, scheme_explicit, mass_consistent
    use model, only: model_type
    use cards, only: deck_type, card_type, get_word, get_name_parameter, get_integer_parameter
@@ -147,6 +148,8 @@ contains
       step%time_place = card%place
       step%direct = has_parameter(card, 'DIRECT')
       step%procedure = procedure_static
+      call read_solver(step, model%source, card, error)
+      if (allocated(error)) return
       if (card%keyword == 'FREQUENCY') then
          step%procedure = procedure_frequency
          call read_modes(step, deck, card, model%source, error)
@@ -159,6 +162,26 @@ contains
       end if
       call read_times(step, deck, card, model%source, error)
    end subroutine read_procedure
+
+   !> SOLVER; modes are found with skylines alone.
+   subroutine read_solver(step, source, card, error)
+      type(step_type), intent(inout) :: step
+      type(source_type), intent(in) :: source
+      type(card_type), intent(in) :: card
+      type(error_type), allocatable, intent(out) :: error
+      character(len=word_length), parameter :: solvers(*) = [character(len=word_length) :: &
+            'AUTO', 'SKYLINE', 'MUMPS']
+      integer :: choice
+
+      call get_word(card, 'SOLVER', solvers, choice, source, error)
+      if (allocated(error)) return
+      if (choice == 0) return
+      step%solver = choice
+      step%solver_place = parameter_place(card, 'SOLVER')
+      if (step%solver == solver_mumps .and. card%keyword == 'FREQUENCY') call fail_at(error, &
+            source, step%solver_place, 'frequencies are not found with MUMPS', &
+            cure='write SOLVER=SKYLINE, or remove SOLVER')
+   end subroutine read_solver
 
    !> The line of *FREQUENCY.
    subroutine read_modes(step, deck, card, source, error)

@@ -4,7 +4,7 @@ module graph
    implicit none
    private
 
-   public :: graph_type, new_graph, degree, walk_levels, sort_by_degree, order_cost
+   public :: graph_type, new_graph, vertex_cliques, degree, walk_levels, sort_by_degree, order_cost
 
    !> The neighbours of vertex v stand at neighbour(first(v):first(v + 1) - 1).
    type :: graph_type
@@ -24,7 +24,7 @@ contains
       integer, allocatable :: clique_first(:), clique(:), seen(:)
       integer :: v, i, j, k, pass
 
-      call list_cliques(n, first, member, clique_first, clique)
+      call vertex_cliques(n, first, member, clique_first, clique)
       self%n = n
       allocate (self%first(n + 1), seen(n))
       do pass = 1, 2
@@ -48,7 +48,7 @@ contains
    end subroutine new_graph
 
    !> The cliques of every vertex.
-   pure subroutine list_cliques(n, first, member, clique_first, clique)
+   pure subroutine vertex_cliques(n, first, member, clique_first, clique)
       integer, intent(in) :: n, first(:), member(:)
       integer, allocatable, intent(out) :: clique_first(:), clique(:)
       integer, allocatable :: next(:)
@@ -70,7 +70,7 @@ contains
             next(member(i)) = next(member(i)) + 1
          end do
       end do
-   end subroutine list_cliques
+   end subroutine vertex_cliques
 
    !> Number of neighbours.
    elemental integer function degree(self, v)

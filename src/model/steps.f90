@@ -10,6 +10,7 @@ module steps
 
    public :: step_type, request_type
    public :: procedure_static, procedure_dynamic, procedure_frequency
+   public :: solver_auto, solver_skyline, solver_mumps
    public :: request_node_print, request_node_file, request_element_print, request_element_file
    public :: request_contact_print, request_contact_file, request_energy_print
    public :: quantity_u, quantity_v, quantity_a, quantity_rf, quantity_s, quantity_e
@@ -19,6 +20,10 @@ module steps
    integer, parameter :: procedure_static = 1
    integer, parameter :: procedure_dynamic = 2
    integer, parameter :: procedure_frequency = 3
+
+   integer, parameter :: solver_auto = 1
+   integer, parameter :: solver_skyline = 2
+   integer, parameter :: solver_mumps = 3
 
    integer, parameter :: request_node_print = 1
    integer, parameter :: request_node_file = 2
@@ -57,6 +62,7 @@ module steps
    type :: step_type
       character(len=name_length) :: name = ''
       integer :: procedure = procedure_dynamic
+      integer :: solver = solver_auto            !! one of the solver_ parameters
       integer :: max_increments = 0              !! INC, 0: no limit
       logical :: direct = .false.                !! fixed increments
       logical :: explicit = .false.              !! every group explicit in this step
@@ -83,6 +89,7 @@ module steps
       type(request_type), allocatable :: requests(:)
       type(place_type) :: place                  !! of `*STEP`
       type(place_type) :: procedure_place        !! of `*DYNAMIC` or `*STATIC`
+      type(place_type) :: solver_place           !! of SOLVER, if given
       type(place_type) :: time_place             !! of the line with dt, T
    end type step_type
 

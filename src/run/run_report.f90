@@ -74,6 +74,7 @@ contains
          call say(log, '  '//plural(system%structure%map%n_eq, 'equation')//', profile ' &
                //to_text(entries)//' entries ('//to_text(8.0e-6_wp*real(entries, wp), 3)//' MB)')
          call report_ordering(simulation%ordering, log)
+         if (len(system%matrices%choice%text) > 0) call say(log, '  '//system%matrices%choice%text)
          if (.not. system%static) call report_dynamics(simulation, log)
       end associate
    end subroutine report_step
@@ -155,10 +156,14 @@ contains
          case (method_lagrange)
             line = 'Lagrange multipliers, velocities corrected at the ends of steps'
          case default
-            line = 'transformation, beta of the impact step ' &
-                  //to_text(impact_beta(simulation%scene, &
-                  simulation%model%steps(1)%dt))//' ('//trim(merge('given    ', &
-                  'automatic', settings%beta_choice == beta_given))//')'
+            if (settings%anchored) then
+               line = 'transformation, steps of one size that begin at events'
+            else
+               line = 'transformation, beta of the impact step ' &
+                     //to_text(impact_beta(simulation%scene, &
+                     simulation%model%steps(1)%dt))//' ('//trim(merge('given    ', &
+                     'automatic', settings%beta_choice == beta_given))//')'
+            end if
          end select
       end associate
       call say(log, '  impact: '//line)
@@ -249,8 +254,10 @@ contains
                //', impacts '//to_text(ledger%impact_loss) &
                //', external work '//to_text(ledger%external_work)//', balance error ' &
                //to_text(ledger%balance_error, 3))
-         call say(log, 'cost: '//to_text(matrices%n_factorizations)//' factorizations, ' &
-               //to_text(matrices%n_solves)//' solves, '//to_text(seconds, 3)//' s')
+         call say(log, 'cost: '//to_text(matrices%n_factorizations)//' factorizations in ' &
+               //to_text(matrices%factor_seconds, 3)//' s, '//to_text(matrices%n_solves) &
+               //' solves in '//to_text(matrices%solve_seconds, 3)//' s, all in ' &
+               //to_text(seconds, 3)//' s')
       end associate
    end subroutine report_summary
 
