@@ -1,10 +1,11 @@
 !> A deck file to a model: cuts it into cards, then lets one reader a family fill its part.
 module deck_reader
    use errors, only: error_type
-   use places, only: note_at, source_line
+   use places, only: fail_at, note_at, source_line
    use model, only: model_type
    use histories, only: boundary_type, nodal_value_type
-   use cards, only: deck_type
+   use cards, only: deck_type, card_type, has_parameter, parameter_index, parameter_place
+   use cards, only: get_integer_parameter
    use card_rules, only: check_card, name_of, is_note_card
    use card_splitter, only: split_deck
    use symbols, only: definition_type, read_symbols, apply_definitions, substitute_in_cards
@@ -66,8 +67,13 @@ contains
       do i = 1, deck%n_cards
          call check_card(deck%cards(i), deck%data, model%source, error)
          if (allocated(error)) return
-         if (is_note_card(deck%cards(i)%rule)) call add_note(model%notes, note_at(model%source, &
-               deck%cards(i)%place, name_of(deck%cards(i)%rule)//' has no effect here'))
+         if (deck%cards(i)%keyword == 'OUTPUT' .and. has_parameter(deck%cards(i), 'COMPRESS')) then
+            call read_compression(model, deck%cards(i), error)
+            if (allocated(error)) return
+         else if (is_note_card(deck%cards(i)%rule)) then
+            call add_note(model%notes, note_at(model%source, deck%cards(i)%place, &
+                  name_of(deck%cards(i)%rule)//' has no effect here'))
+         end if
          if (deck%cards(i)%keyword == 'HEADING') call add_heading(model, deck, i)
       end do
       call mark_used_symbols(deck, model%source)
@@ -77,6 +83,23 @@ contains
                'the parameter '//trim(deck%symbols(i)%name)//' is not used'))
       end do
    end subroutine check_cards
+
+   !> `*OUTPUT, COMPRESS`: a level from 1, also where none is given, to 9.
+   pure subroutine read_compression(model, card, error)
+      type(model_type), intent(inout) :: model
+      type(card_type), intent(in) :: card
+      type(error_type), allocatable, intent(out) :: error
+      integer :: level
+
+      level = 1
+      if (allocated(card%parameters(parameter_index(card, 'COMPRESS'))%value)) then
+         call get_integer_parameter(card, 'COMPRESS', 1, level, model%source, error)
+         if (allocated(error)) return
+      end if
+      model%compression = level
+      if (level > 9) call fail_at(error, model%source, parameter_place(card, 'COMPRESS'), &
+            'COMPRESS: the highest level is 9', cure='1 is fast, 9 is small; write 1 to 9')
+   end subroutine read_compression
 
    subroutine add_heading(model, deck, i)
       type(model_type), intent(inout) :: model

@@ -32,6 +32,7 @@ module model
       type(nodal_value_type), allocatable :: initial_velocities(:)
       type(step_type), allocatable :: steps(:)
       type(source_line_type), allocatable :: notes(:)   !! remarks on the deck, for the log
+      integer :: compression = 0                 !! level of the results' compression, 0 to 9
    end type model_type
 
 end module model

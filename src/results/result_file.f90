@@ -59,6 +59,7 @@ contains
       call new_plan(self%plan, model)
       call self%file%create(path, error)
       if (allocated(error)) return
+      call self%file%compress(model%compression)
       call new_grid(self%grid, self%file, model, self%plan, any([(scene%system%structure%groups(i) &
             %element%is_solid, i=1, size(scene%system%structure%groups))]), error)
       if (allocated(error)) return
