@@ -109,7 +109,7 @@ contains
       call assemble_sum(structure, profile, d, history, factors, matrix)
       if (abs(factors(2)) + abs(factors(3)) > 0.0_wp) return
       do j = 1, matrix%n
-         if (.not. matrix%values(matrix%last(j)) > 0.0_wp) matrix%values(matrix%last(j)) = 1.0_wp
+         if (.not. matrix%entry(j, j) > 0.0_wp) call matrix%add(j, j, 1.0_wp - matrix%entry(j, j))
       end do
    end subroutine assemble_effective
 

@@ -12,6 +12,7 @@ module element_groups
          scheme_automatic, mass_consistent
    use properties, only: section_type, material_type
    use element_interface, only: element_type
+   use element_chunks, only: chunks_type
    use axial_kinematics, only: one_freedom, two_freedoms, line_of_action
    use point_mass, only: point_mass_type, new_point_mass
    use solid_factory, only: make_solid
@@ -30,6 +31,7 @@ module element_groups
       integer, allocatable :: member(:)          !! (n) element indices in the model
       integer, allocatable :: ien(:, :)          !! (n_nodes, n) node indices
       integer, allocatable :: lm(:, :)           !! (3 n_nodes, n) freedoms, 0: does not exist
+      type(chunks_type) :: chunks                !! of elements that work in chunks
       integer :: history_start = 0               !! variables before this group's in the history
       integer :: scheme = scheme_implicit
       logical :: lumped = .true.

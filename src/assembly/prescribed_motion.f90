@@ -9,7 +9,7 @@ module prescribed_motion
    private
 
    public :: motion_type, motion_set_type, begin_motions, start_motions, &
-         impose_motion, prescribed_freedoms
+         impose_motion, prescribed_freedoms, are_at_rest
 
    !> One prescribed freedom in the step at hand.
    type :: motion_type
@@ -146,6 +146,31 @@ contains
          call evaluate(self%motions(i), t, d(f), v(f), a(f))
       end do
    end subroutine impose_motion
+
+   !> Whether all prescribed freedoms are where they have to be and stay there.
+   pure function are_at_rest(self, d, v, a) result(rest)
+      type(motion_set_type), intent(in) :: self
+      real(wp), intent(in) :: d(:), v(:), a(:)         !! (n_freedoms)
+      logical :: rest
+      integer :: i, f
+
+      rest = .false.
+      do i = 1, size(self%motions)
+         associate (motion => self%motions(i))
+            f = motion%freedom
+            if (abs(v(f)) + abs(a(f)) > 0.0_wp .or. motion%ramped) return
+            if (motion%motion == motion_displacement) then
+               if (abs(d(f) - motion%value) > 0.0_wp) return
+               if (motion%has_amplitude .and. abs(motion%value) > 0.0_wp) return
+            else if (abs(motion%value) + abs(d(f) - motion%d_start) > 0.0_wp) then
+               return
+            else if (motion%motion /= motion_velocity .and. abs(motion%v_start) > 0.0_wp) then
+               return
+            end if
+         end associate
+      end do
+      rest = .true.
+   end function are_at_rest
 
    pure subroutine evaluate(motion, t, d, v, a)
       type(motion_type), intent(in) :: motion

@@ -10,6 +10,7 @@ module structure
    use needed_freedoms, only: find_needed_freedoms
    use redistributed_mass, only: redistribute_mass
    use dof_map, only: dof_map_type, new_dof_map
+   use element_chunks, only: new_chunks, add_forces_of_chunks
    implicit none
    private
 
@@ -55,6 +56,10 @@ contains
       self%node_id = model%nodes%id(:model%nodes%n)
       do g = 1, size(self%groups)
          call locate(self%groups(g), self%map)
+         associate (group => self%groups(g))
+            if (group%element%blocks%n_chunks > 0) call new_chunks(group%chunks, &
+                  group%element%blocks, group%ien, group%lm)
+         end associate
          self%has_consistent_mass = self%has_consistent_mass .or. .not. self%groups(g)%lumped
          self%is_linear = self%is_linear .and. self%groups(g)%element%linear
          self%groups(g)%history_start = self%n_history
@@ -183,33 +188,54 @@ contains
       part = reshape(history(group%history_start + 1:group%history_start + size(part)), shape(part))
    end function group_history
 
-   !> Adds S(d) of the groups of a scheme and updates their history from the last accepted one.
-   pure subroutine elastic_force(self, scheme, d, history, force, updated)
+   !> Adds S(d) of the groups of a scheme and updates their history from the last accepted one; and,
+   !> if asked for, their strain energy and plastic work at d.
+   subroutine elastic_force(self, scheme, d, history, force, updated, energy)
       type(structure_type), intent(in) :: self
       integer, intent(in) :: scheme              !! scheme_implicit or scheme_explicit
       real(wp), intent(in) :: d(:)               !! (n_freedoms)
-      real(wp), intent(in) :: history(:)         !! (n_history) last accepted
-      real(wp), intent(inout) :: force(:)        !! (n_freedoms)
-      real(wp), intent(inout) :: updated(:)      !! (n_history) at d, of this scheme's groups
-      real(wp), allocatable :: local(:, :), local_force(:, :), local_history(:, :)
-      integer :: g, n
+      real(wp), intent(in), contiguous :: history(:)        !! (n_history) last accepted
+      real(wp), intent(inout), contiguous :: force(:)       !! (n_freedoms)
+      real(wp), intent(inout), contiguous :: updated(:)     !! (n_history) at d, in this scheme
+      real(wp), intent(inout), optional :: energy(2)        !! strain energy, plastic work
+      real(wp) :: part(2)
+      integer :: g, from, to
 
       do g = 1, size(self%groups)
          associate (group => self%groups(g))
             if (group%scheme /= scheme) cycle
-            allocate (local(size(group%lm, 1), size(group%lm, 2)))
-            allocate (local_force, mold=local)
-            allocate (local_history(group%element%n_history, group%element%n_elements))
-            call gather(group, d, local)
-            call group%element%internal_force(local, group_history(group, history), local_force, &
-                  local_history)
-            call scatter(group, local_force, force)
-            n = size(local_history)
-            updated(group%history_start + 1:group%history_start + n) = reshape(local_history, [n])
-            deallocate (local, local_force, local_history)
+            if (group%chunks%n == 0) then
+               call add_one_by_one(group, d, history, force, updated, energy)
+               cycle
+            end if
+            from = group%history_start + 1
+            to = group%history_start + group%element%n_history*group%element%n_elements
+            part = 0.0_wp
+            call add_forces_of_chunks(group%chunks, group%element, d, history(from:to), force, &
+                  updated(from:to), part)
+            if (present(energy)) energy = energy + part
          end associate
       end do
    end subroutine elastic_force
+
+   !> The same of one group whose elements have no chunks.
+   pure subroutine add_one_by_one(group, d, history, force, updated, energy)
+      type(group_type), intent(in) :: group
+      real(wp), intent(in) :: d(:), history(:)
+      real(wp), intent(inout) :: force(:), updated(:)
+      real(wp), intent(inout), optional :: energy(2)
+      real(wp), dimension(size(group%lm, 1), size(group%lm, 2)) :: local, local_force
+      real(wp), dimension(group%element%n_history, group%element%n_elements) :: memory
+      integer :: n
+
+      call gather(group, d, local)
+      call group%element%internal_force(local, group_history(group, history), local_force, memory)
+      call scatter(group, local_force, force)
+      n = size(memory)
+      updated(group%history_start + 1:group%history_start + n) = reshape(memory, [n])
+      if (present(energy)) energy = energy + [group%element%strain_energy(local, memory), &
+            group%element%plastic_work(memory)]
+   end subroutine add_one_by_one
 
    !> Adds C v of the groups of a scheme.
    pure subroutine damping_force(self, scheme, v, force)

@@ -144,7 +144,7 @@ contains
 
    !> Pressures at the nodes from the normal forces on them, both in the order of self%nodes; zero
    !> everywhere where an edge has no length.
-   pure function recover_pressures(self, forces) result(pressures)
+   function recover_pressures(self, forces) result(pressures)
       type(pressure_edges_type), intent(in) :: self
       real(wp), intent(in) :: forces(:)          !! (n) positive where the surface is pressed
       real(wp) :: pressures(size(forces))

@@ -1,7 +1,7 @@
 !> The deck's files cut into keyword cards and data lines; *INCLUDE is followed here.
 module card_splitter
    use errors, only: error_type, new_error, status_file, status_deck
-   use places, only: place_type, source_type, fail_at
+   use places, only: place_type, source_type, source_file_type, source_line, fail_at
    use words, only: squeezed, is_blank
    use cards, only: card_type, deck_type, parameter_type, parameter_index
    use card_rules, only: check_keyword
@@ -62,7 +62,7 @@ contains
       progress%files(progress%depth) = file
       line = 1
       do while (line <= source%files(file)%n_lines)
-         select case (kind_of(source%files(file)%lines(line)%text))
+         select case (kind_of(source%files(file), line))
          case (kind_keyword)
             call read_card(deck, source, file, line, error)
             if (.not. allocated(error)) call place_card(deck, source, progress, error)
@@ -79,19 +79,23 @@ contains
    end subroutine split_file
 
    !> Blank (also commas alone), comment, keyword or data line.
-   pure function kind_of(line) result(kind)
-      character(len=*), intent(in) :: line
+   pure function kind_of(file, line) result(kind)
+      type(source_file_type), intent(in) :: file
+      integer, intent(in) :: line
       integer :: kind
-      integer :: first
+      integer :: first, last
 
       kind = kind_blank
-      first = verify(line, ' ,'//achar(9))
-      if (first == 0) return
+      last = file%last(line)
+      do first = file%first(line), last
+         if (.not. is_blank(file%content(first:first)) .and. file%content(first:first) /= ',') exit
+      end do
+      if (first > last) return
       kind = kind_data
-      if (line(first:first) /= '*') return
+      if (file%content(first:first) /= '*') return
       kind = kind_keyword
-      if (first == len(line)) return
-      if (line(first + 1:first + 1) == '*') kind = kind_comment
+      if (first == last) return
+      if (file%content(first + 1:first + 1) == '*') kind = kind_comment
    end function kind_of
 
    pure subroutine add_data(deck, source, file, line, error)
@@ -140,18 +144,18 @@ contains
       place%file = file
       place%line = line
       card%place = place
-      call read_card_line(card, source%files(file)%lines(line)%text, place, continued)
+      call read_card_line(card, source_line(source, file, line), place, continued)
       if (card%keyword == '') then
          call fail_at(error, source, card%place, "a '*' without a keyword", &
                cure='write *KEYWORD, or ** for a comment')
          return
       end if
       do while (continued .and. line < source%files(file)%n_lines)
-         if (kind_of(source%files(file)%lines(line + 1)%text) /= kind_data) exit
+         if (kind_of(source%files(file), line + 1) /= kind_data) exit
          line = line + 1
          place%line = line
          place%card = card%place%line
-         call read_card_line(card, source%files(file)%lines(line)%text, place, continued)
+         call read_card_line(card, source_line(source, file, line), place, continued)
       end do
       call append_card(deck, card)
    end subroutine read_card

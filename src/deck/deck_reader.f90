@@ -1,7 +1,7 @@
 !> A deck file to a model: cuts it into cards, then lets one reader a family fill its part.
 module deck_reader
    use errors, only: error_type
-   use places, only: note_at
+   use places, only: note_at, source_line
    use model, only: model_type
    use histories, only: boundary_type, nodal_value_type
    use cards, only: deck_type
@@ -87,7 +87,7 @@ contains
       do j = deck%cards(i)%first, deck%cards(i)%last
          if (len(model%heading) > 0) model%heading = model%heading//new_line('a')
          model%heading = model%heading// &
-               trim(model%source%files(deck%data(j)%file)%lines(deck%data(j)%line)%text)
+               trim(source_line(model%source, deck%data(j)%file, deck%data(j)%line))
       end do
    end subroutine add_heading
 

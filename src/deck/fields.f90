@@ -2,7 +2,7 @@
 module fields
    use kinds, only: wp
    use errors, only: error_type
-   use places, only: place_type, source_type, fail_at
+   use places, only: place_type, source_type, source_line, fail_at
    use properties, only: name_length
    use words, only: squeezed, is_blank
    use numbers, only: parse_integer, parse_real
@@ -41,7 +41,7 @@ contains
 
       fields%place = deck%data(i)
       fields%rule = card%rule
-      fields%text = source%files(deck%data(i)%file)%lines(deck%data(i)%line)%text
+      fields%text = source_line(source, deck%data(i)%file, deck%data(i)%line)
       call cut_at_commas(fields)
       if (index(fields%text, '<') > 0) call substitute_fields(fields, deck, source, error)
    end subroutine split_line

@@ -3,10 +3,12 @@ module mesh_reader
    use kinds, only: wp
    use errors, only: error_type
    use places, only: place_type, source_type, fail_at, line_text
+   use mesh, only: element_table_type
    use model, only: model_type
    use cards, only: deck_type, card_type, get_word
    use fields, only: fields_type, split_line, check_count, field_place
    use fields, only: get_integer, get_reals
+   use plain_lines, only: scan_integers, scan_point
    use element_types, only: type_names, kinds_of_types, nodes_of_types, most_nodes
    use text, only: to_text
    implicit none
@@ -23,6 +25,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(fields_type) :: fields
       integer :: i, j, n
+      logical :: done
 
       n = count_lines(deck, 'NODE')
       allocate (model%nodes%id(n), model%nodes%x(3, n), model%nodes%place(n))
@@ -30,6 +33,8 @@ contains
          if (deck%cards(i)%keyword /= 'NODE') cycle
          deck%cards(i)%first_item = model%nodes%n + 1
          do j = deck%cards(i)%first, deck%cards(i)%last
+            call take_plain_node(model, deck%data(j), done)
+            if (done) cycle
             call split_line(fields, deck, deck%cards(i), j, model%source, error)
             if (allocated(error)) return
             call read_node(model, fields, error)
@@ -39,11 +44,42 @@ contains
       end do
    end subroutine read_nodes
 
+   !> Takes a line that is all numbers and right; leaves any other as it is.
+   pure subroutine take_plain_node(model, place, done)
+      type(model_type), intent(inout) :: model
+      type(place_type), intent(in) :: place
+      logical, intent(out) :: done
+      integer :: id
+      real(wp) :: x(3)
+
+      associate (file => model%source%files(place%file))
+         call scan_point(file%content(file%first(place%line):file%last(place%line)), id, x, done)
+      end associate
+      done = done .and. id > 0
+      if (done) done = model%nodes%index_of%find(id) == 0
+      if (done) call add_node(model, id, x, place)
+   end subroutine take_plain_node
+
+   pure subroutine add_node(model, id, x, place)
+      type(model_type), intent(inout) :: model
+      integer, intent(in) :: id
+      real(wp), intent(in) :: x(3)
+      type(place_type), intent(in) :: place
+      integer :: n
+
+      n = model%nodes%n + 1
+      model%nodes%n = n
+      model%nodes%id(n) = id
+      model%nodes%x(:, n) = x
+      model%nodes%place(n) = place
+      call model%nodes%index_of%insert(id, n)
+   end subroutine add_node
+
    subroutine read_node(model, fields, error)
       type(model_type), intent(inout) :: model
       type(fields_type), intent(in) :: fields
       type(error_type), allocatable, intent(out) :: error
-      integer :: id, n, twin
+      integer :: id, twin
       real(wp) :: x(3)
 
       call check_count(fields, 4, model%source, error)
@@ -64,12 +100,7 @@ contains
                cure='give every node its own id')
          return
       end if
-      n = model%nodes%n + 1
-      model%nodes%n = n
-      model%nodes%id(n) = id
-      model%nodes%x(:, n) = x
-      model%nodes%place(n) = fields%place
-      call model%nodes%index_of%insert(id, n)
+      call add_node(model, id, x, fields%place)
    end subroutine read_node
 
    !> Fills the table of elements from all *ELEMENT cards.
@@ -92,14 +123,22 @@ contains
          if (allocated(error)) return
          deck%cards(i)%last_item = model%elements%n
       end do
-      n = model%elements%n
-      model%elements%id = model%elements%id(:n)
-      model%elements%kind = model%elements%kind(:n)
-      model%elements%place = model%elements%place(:n)
-      model%elements%first = model%elements%first(:n + 1)
-      model%elements%nodes = model%elements%nodes(:model%elements%first(n + 1) - 1)
-      allocate (model%elements%section(n), source=0)
+      if (model%elements%n < n) call cut_to_size(model%elements)
+      allocate (model%elements%section(model%elements%n), source=0)
    end subroutine read_elements
+
+   !> Gives back what was kept for the lines that only go on with an element.
+   pure subroutine cut_to_size(elements)
+      type(element_table_type), intent(inout) :: elements
+      integer :: n
+
+      n = elements%n
+      elements%id = elements%id(:n)
+      elements%kind = elements%kind(:n)
+      elements%place = elements%place(:n)
+      elements%first = elements%first(:n + 1)
+      elements%nodes = elements%nodes(:elements%first(n + 1) - 1)
+   end subroutine cut_to_size
 
    !> Room for the nodes of all elements: as if every line held an element.
    subroutine count_nodes(model, deck, n_nodes, error)
@@ -126,6 +165,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(place_type) :: places(1 + most_nodes), place
       integer :: numbers(1 + most_nodes), choice, line, n
+      logical :: done
 
       call get_word(card, 'TYPE', type_names, choice, model%source, error)
       if (allocated(error)) return
@@ -133,12 +173,62 @@ contains
       line = card%first
       do while (line <= card%last)
          place = deck%data(line)
+         call take_plain_element(model, kinds_of_types(choice), n, place, done)
+         if (done) then
+            line = line + 1
+            cycle
+         end if
          call read_numbers(numbers(:n), places(:n), deck, card, line, model%source, error)
          if (allocated(error)) return
          call add_element(model, kinds_of_types(choice), numbers(:n), places(:n), place, error)
          if (allocated(error)) return
       end do
    end subroutine read_element_card
+
+   !> Takes a line that is one whole element, all numbers and right; leaves any other as it is.
+   pure subroutine take_plain_element(model, kind, n, place, done)
+      type(model_type), intent(inout) :: model
+      integer, intent(in) :: kind
+      integer, intent(in) :: n                   !! numbers of the element: id and nodes
+      type(place_type), intent(in) :: place
+      logical, intent(out) :: done
+      integer :: numbers(n), nodes(n - 1), n_read, k
+
+      associate (file => model%source%files(place%file))
+         call scan_integers(file%content(file%first(place%line):file%last(place%line)), numbers, &
+               n_read, done)
+      end associate
+      done = done .and. n_read == n
+      if (.not. done) return
+      done = numbers(1) > 0
+      if (done) done = model%elements%index_of%find(numbers(1)) == 0
+      do k = 1, n - 1
+         if (.not. done) return
+         nodes(k) = model%nodes%index_of%find(numbers(k + 1))
+         done = nodes(k) > 0 .and. all(nodes(:k - 1) /= nodes(k))
+      end do
+      if (done) call append_element(model, kind, numbers(1), nodes, place)
+   end subroutine take_plain_element
+
+   !> Appends an element that is right.
+   pure subroutine append_element(model, kind, id, nodes, place)
+      type(model_type), intent(inout) :: model
+      integer, intent(in) :: kind, id
+      integer, intent(in) :: nodes(:)            !! indices
+      type(place_type), intent(in) :: place
+      integer :: e
+
+      e = model%elements%n + 1
+      model%elements%n = e
+      model%elements%id(e) = id
+      model%elements%kind(e) = kind
+      model%elements%place(e) = place
+      associate (first => model%elements%first)
+         first(e + 1) = first(e) + size(nodes)
+         model%elements%nodes(first(e):first(e + 1) - 1) = nodes
+      end associate
+      call model%elements%index_of%insert(id, e)
+   end subroutine append_element
 
    !> The id and the nodes of one element, over as many lines as trailing commas join.
    subroutine read_numbers(numbers, places, deck, card, line, source, error)
@@ -183,7 +273,7 @@ contains
       integer, intent(in) :: kind, numbers(:)
       type(place_type), intent(in) :: places(:), place
       type(error_type), allocatable, intent(out) :: error
-      integer :: k, e, first, node, twin
+      integer :: nodes(size(numbers) - 1), k, twin
 
       if (numbers(1) < 1) then
          call fail_at(error, model%source, places(1), 'an element id must be positive', &
@@ -198,16 +288,13 @@ contains
                cure='give every element its own id')
          return
       end if
-      e = model%elements%n + 1
-      first = model%elements%first(e)
       do k = 2, size(numbers)
-         node = model%nodes%index_of%find(numbers(k))
-         if (node == 0) then
+         nodes(k - 1) = model%nodes%index_of%find(numbers(k))
+         if (nodes(k - 1) == 0) then
             call fail_at(error, model%source, places(k), 'no such node: '//to_text(numbers(k)), &
                   cure='define it with *NODE')
             return
          end if
-         model%elements%nodes(first + k - 2) = node
       end do
       do k = 3, size(numbers)
          if (all(numbers(2:k - 1) /= numbers(k))) cycle
@@ -215,12 +302,7 @@ contains
                cure='join different nodes')
          return
       end do
-      model%elements%n = e
-      model%elements%id(e) = numbers(1)
-      model%elements%kind(e) = kind
-      model%elements%place(e) = place
-      model%elements%first(e + 1) = first + size(numbers) - 1
-      call model%elements%index_of%insert(numbers(1), e)
+      call append_element(model, kind, numbers(1), nodes, place)
    end subroutine add_element
 
    !> Data lines of all cards of a keyword.

@@ -1,10 +1,28 @@
 !> Numbers as a deck writes them: Fortran and C spelling, nothing that is not finite.
 module numbers
+   use, intrinsic :: iso_c_binding, only: c_char, c_double, c_null_char, c_null_ptr, c_ptr
    use kinds, only: wp, int64
    implicit none
    private
 
    public :: parse_integer, parse_real, parse_fraction, unit_vector
+
+   !> The powers of ten that a double holds exactly.
+   real(wp), parameter :: power_of_ten(0:22) = [1.0e0_wp, 1.0e1_wp, 1.0e2_wp, 1.0e3_wp, 1.0e4_wp, &
+         1.0e5_wp, 1.0e6_wp, 1.0e7_wp, 1.0e8_wp, 1.0e9_wp, 1.0e10_wp, 1.0e11_wp, 1.0e12_wp, &
+         1.0e13_wp, 1.0e14_wp, 1.0e15_wp, 1.0e16_wp, 1.0e17_wp, 1.0e18_wp, 1.0e19_wp, 1.0e20_wp, &
+         1.0e21_wp, 1.0e22_wp]
+
+   interface
+      !> The number at the start of a text that ends with a zero byte, correctly rounded.
+      pure function strtod(text, rest) result(value) bind(c, name='strtod')
+         import :: c_char, c_double, c_ptr
+         implicit none
+         character(kind=c_char), intent(in) :: text(*)
+         type(c_ptr), value, intent(in) :: rest
+         real(c_double) :: value
+      end function strtod
+   end interface
 
 contains
 
@@ -18,9 +36,7 @@ contains
 
       value = 0
       start = 1
-      if (len(string) > 0) then
-         if (scan(string(1:1), '+-') == 1) start = 2
-      end if
+      if (is_sign(string, 1)) start = 2
       if (start > len(string) .or. verify(string(start:), '0123456789') > 0) then
          cause = "'"//string//"' is not an integer"
          return
@@ -43,7 +59,7 @@ contains
       real(wp), intent(out) :: value
       character(len=:), allocatable, intent(out) :: cause   !! not allocated when all is well
       integer(int64) :: mantissa
-      integer :: n_digits, exponent, start
+      integer :: n_digits, exponent
       logical :: valid
 
       call scan_real(string, mantissa, n_digits, exponent, valid)
@@ -62,9 +78,7 @@ contains
       else if (exceeds_huge(mantissa, n_digits, exponent)) then
          cause = "the number '"//string//"' is too large"
       else
-         start = 1
-         if (string(1:1) == '+') start = 2
-         read (string(start:), *) value
+         value = rounded(string)
       end if
    end subroutine parse_real
 
@@ -122,9 +136,7 @@ contains
       point = .false.
       written = 0
       i = 1
-      if (len(string) > 0) then
-         if (scan(string(1:1), '+-') == 1) i = 2
-      end if
+      if (is_sign(string, 1)) i = 2
       do while (i <= len(string))
          digit = iachar(string(i:i)) - iachar('0')
          if (digit >= 0 .and. digit <= 9) then
@@ -149,21 +161,58 @@ contains
       character(len=*), intent(in) :: string
       integer, intent(out) :: exponent
       logical, intent(out) :: valid
-      integer :: i, start
+      integer :: i, start, digit
 
       exponent = 0
       valid = .false.
-      if (scan(string(1:1), 'eEdD') == 0 .or. len(string) < 2) return
+      if (.not. is_exponent_letter(string(1:1))) return
       start = 2
-      if (scan(string(2:2), '+-') == 1) start = 3
-      if (start > len(string)) return
-      if (verify(string(start:), '0123456789') > 0) return
-      valid = .true.
+      if (is_sign(string, 2)) start = 3
       do i = start, len(string)
-         exponent = min(100000000, 10*exponent + iachar(string(i:i)) - iachar('0'))
+         digit = iachar(string(i:i)) - iachar('0')
+         if (digit < 0 .or. digit > 9) return
+         exponent = min(100000000, 10*exponent + digit)
       end do
+      if (start > len(string)) return
+      valid = .true.
       if (string(2:2) == '-') exponent = -exponent
    end subroutine scan_exponent
+
+   pure function is_sign(string, i) result(sign)
+      character(len=*), intent(in) :: string
+      integer, intent(in) :: i
+      logical :: sign
+
+      sign = .false.
+      if (i <= len(string)) sign = string(i:i) == '+' .or. string(i:i) == '-'
+   end function is_sign
+
+   pure function is_exponent_letter(letter) result(marks)
+      character(len=1), intent(in) :: letter
+      logical :: marks
+
+      select case (letter)
+      case ('e', 'E', 'd', 'D')
+         marks = .true.
+      case default
+         marks = .false.
+      end select
+   end function is_exponent_letter
+
+   !> A valid number rounded by the C library, which knows no exponent letter but e.
+   pure function rounded(string) result(value)
+      character(len=*), intent(in) :: string
+      real(wp) :: value
+      character(kind=c_char) :: text(len(string) + 1)
+      integer :: i
+
+      do i = 1, len(string)
+         text(i) = string(i:i)
+         if (is_exponent_letter(string(i:i))) text(i) = 'e'
+      end do
+      text(len(string) + 1) = c_null_char
+      value = real(strtod(text, c_null_ptr), wp)
+   end function rounded
 
    !> Exact while both factors are: the quotient or product is rounded once.
    pure function scaled(mantissa, exponent) result(value)
@@ -172,9 +221,9 @@ contains
       real(wp) :: value
 
       if (exponent < 0) then
-         value = real(mantissa, wp)/10.0_wp**(-exponent)
+         value = real(mantissa, wp)/power_of_ten(-exponent)
       else
-         value = real(mantissa, wp)*10.0_wp**exponent
+         value = real(mantissa, wp)*power_of_ten(exponent)
       end if
    end function scaled
 

@@ -10,12 +10,15 @@ module set_reader
    use cards, only: deck_type, card_type, get_name_parameter, has_parameter
    use fields, only: fields_type, split_line, check_count, field_place, is_given, is_integer
    use fields, only: get_integer, get_name
+   use plain_lines, only: scan_integers
    use words, only: advice
    use text, only: to_text
    implicit none
    private
 
    public :: read_sets, find_nodes, find_element_set, find_node_set
+
+   integer, parameter :: most_plain = 32   !! ids on a line that are read the quick way
 
    !> A set while it is read: members so far, and the sets it takes in.
    type :: draft_type
@@ -140,6 +143,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(fields_type) :: fields
       integer :: line, item
+      logical :: done
 
       associate (draft => family%drafts(set))
          do item = card%first_item, card%last_item
@@ -148,6 +152,8 @@ contains
       end associate
       if (all(card%keyword /= ['NSET ', 'ELSET'])) return
       do line = card%first, card%last
+         call take_plain_ids(family%drafts(set), card, deck%data(line), index_of, source, done)
+         if (done) cycle
          call split_line(fields, deck, card, line, source, error)
          if (allocated(error)) return
          if (has_parameter(card, 'GENERATE')) then
@@ -158,6 +164,32 @@ contains
          if (allocated(error)) return
       end do
    end subroutine read_members
+
+   !> Takes a line that lists nothing but ids that exist; leaves any other as it is.
+   pure subroutine take_plain_ids(draft, card, place, index_of, source, done)
+      type(draft_type), intent(inout) :: draft
+      type(card_type), intent(in) :: card
+      type(place_type), intent(in) :: place
+      type(integer_map_type), intent(in) :: index_of
+      type(source_type), intent(in) :: source
+      logical, intent(out) :: done
+      integer :: items(most_plain), n, i
+
+      done = .not. has_parameter(card, 'GENERATE')
+      if (.not. done) return
+      associate (file => source%files(place%file))
+         call scan_integers(file%content(file%first(place%line):file%last(place%line)), items, n, &
+               done)
+      end associate
+      do i = 1, n
+         if (.not. done) return
+         items(i) = index_of%find(items(i))
+         done = items(i) > 0
+      end do
+      do i = 1, merge(n, 0, done)
+         call append(draft%members, draft%n_members, items(i))
+      end do
+   end subroutine take_plain_ids
 
    !> Ids and names of sets, one a field.
    subroutine add_fields(family, set, fields, index_of, source, error)

@@ -3,12 +3,13 @@ module source_reader
    use, intrinsic :: iso_fortran_env, only: int64
    use errors, only: error_type, new_error, status_file
    use places, only: source_type, source_file_type, source_line_type, place_type, fail_at
+   use places, only: new_source_file
    implicit none
    private
 
    public :: add_file, add_note
 
-   integer, parameter :: code_tab = 9, code_lf = 10, code_cr = 13
+   integer, parameter :: code_tab = 9
 
 contains
 
@@ -23,8 +24,7 @@ contains
       if (allocated(error)) return
       call make_room(source)
       source%n_files = source%n_files + 1
-      source%files(source%n_files)%name = path
-      call split_lines(source%files(source%n_files), content)
+      call new_source_file(source%files(source%n_files), path, content)
       call check_bytes(source, source%n_files, error)
    end subroutine add_file
 
@@ -61,43 +61,6 @@ contains
       end if
    end subroutine read_content
 
-   !> Cuts at line feeds; a carriage return before one goes too.
-   pure subroutine split_lines(file, content)
-      type(source_file_type), intent(inout) :: file
-      character(len=*), intent(in) :: content
-      integer :: i, n, start
-
-      n = 0
-      do i = 1, len(content)
-         if (iachar(content(i:i)) == code_lf) n = n + 1
-      end do
-      if (len(content) > 0) then
-         if (iachar(content(len(content):)) /= code_lf) n = n + 1
-      end if
-      allocate (file%lines(n))
-      file%n_lines = 0
-      start = 1
-      do i = 1, len(content)
-         if (iachar(content(i:i)) /= code_lf) cycle
-         call keep_line(file, content(start:i - 1))
-         start = i + 1
-      end do
-      if (start <= len(content)) call keep_line(file, content(start:))
-   end subroutine split_lines
-
-   pure subroutine keep_line(file, line)
-      type(source_file_type), intent(inout) :: file
-      character(len=*), intent(in) :: line
-      integer :: last
-
-      last = len(line)
-      if (last > 0) then
-         if (iachar(line(last:last)) == code_cr) last = last - 1
-      end if
-      file%n_lines = file%n_lines + 1
-      file%lines(file%n_lines)%text = line(:last)
-   end subroutine keep_line
-
    !> Refuses control bytes: the file is no text.
    pure subroutine check_bytes(source, file, error)
       type(source_type), intent(in) :: source
@@ -106,17 +69,20 @@ contains
       type(place_type) :: place
       integer :: i, column
 
-      do i = 1, source%files(file)%n_lines
-         column = first_control_byte(source%files(file)%lines(i)%text)
-         if (column == 0) cycle
-         place%file = file
-         place%line = i
-         place%column = column
-         place%length = 1
-         call fail_at(error, source, place, 'this is not a text file: it holds a control byte', &
-               cure='decks are plain text (ASCII or UTF-8)')
-         return
-      end do
+      associate (from => source%files(file))
+         do i = 1, from%n_lines
+            column = first_control_byte(from%content(from%first(i):from%last(i)))
+            if (column == 0) cycle
+            place%file = file
+            place%line = i
+            place%column = column
+            place%length = 1
+            call fail_at(error, source, place, &
+                  'this is not a text file: it holds a control byte', &
+                  cure='decks are plain text (ASCII or UTF-8)')
+            return
+         end do
+      end associate
    end subroutine check_bytes
 
    pure function first_control_byte(line) result(column)
@@ -131,7 +97,7 @@ contains
       column = 0
    end function first_control_byte
 
-   !> Room for one more file; the lines of those present are moved, not copied.
+   !> Room for one more file; the text of those present is moved, not copied.
    pure subroutine make_room(source)
       type(source_type), intent(inout) :: source
       type(source_file_type), allocatable :: files(:)
@@ -142,7 +108,9 @@ contains
       allocate (files(2*size(source%files)))
       do i = 1, source%n_files
          call move_alloc(source%files(i)%name, files(i)%name)
-         call move_alloc(source%files(i)%lines, files(i)%lines)
+         call move_alloc(source%files(i)%content, files(i)%content)
+         call move_alloc(source%files(i)%first, files(i)%first)
+         call move_alloc(source%files(i)%last, files(i)%last)
          files(i)%n_lines = source%files(i)%n_lines
       end do
       call move_alloc(files, source%files)

@@ -2,7 +2,7 @@
 module symbols
    use kinds, only: wp
    use errors, only: error_type, new_error, status_usage
-   use places, only: place_type, source_type, fail_at
+   use places, only: place_type, source_type, source_line, fail_at
    use properties, only: name_length
    use words, only: squeezed, advice
    use numbers, only: parse_real
@@ -55,7 +55,7 @@ contains
       real(wp) :: number
       integer :: equals
 
-      line = source%files(place%file)%lines(place%line)%text
+      line = source_line(source, place%file, place%line)
       equals = index(line, '=')
       symbol%place = place
       if (equals == 0) then
@@ -190,7 +190,9 @@ contains
 
       if (size(deck%symbols) == 0) return
       do i = 1, deck%n_data
-         call mark_used(deck, source%files(deck%data(i)%file)%lines(deck%data(i)%line)%text)
+         associate (from => source%files(deck%data(i)%file), line => deck%data(i)%line)
+            call mark_used(deck, from%content(from%first(line):from%last(line)))
+         end associate
       end do
    end subroutine mark_used_symbols
 

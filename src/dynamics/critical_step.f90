@@ -1,11 +1,10 @@
 !> Bounds on the highest frequencies from single elements: for shares M_e of the mass with
 !> sum M_e <= M, omega_max^2 <= max_e lambda(K_e, M_e). All is folded onto the equations,
-!> constraints
-!> followed; the mass of each equation is shared among its elements in proportion to their diagonal
-!> stiffness.
+!> constraints followed; the mass of each equation is shared among its elements in proportion to
+!> their diagonal stiffness.
 module critical_step
    use kinds, only: wp
-   use small_eigen, only: largest_eigenvalue
+   use small_eigen, only: largest_eigenvalue, has_larger_eigenvalue
    use element_groups, only: group_type, group_mass
    use dof_map, only: dof_map_type
    use structure, only: structure_type, least_mass
@@ -23,7 +22,8 @@ module critical_step
       real(wp) :: step = huge(1.0_wp)       !! critical step of explicit integration
    end type critical_type
 
-   !> An element matrix on the equations behind its freedoms.
+   !> An element matrix on the equations behind its freedoms: the first n of each. The room is kept
+   !> from element to element.
    type :: folded_type
       integer :: n = 0
       integer, allocatable :: equation(:)
@@ -105,10 +105,12 @@ contains
             if (size(group%damping) > 0) rate = own_eigenvalue(group%damping(:, :, e), mass, used)
          else
             call fold(structure%map, group%lm(:, e), k, folded)
+            lambda = 0.0_wp
             call bound_element(structure%map, folded, m, k_diagonal, lambda, one%massless_freedom)
          end if
          if (all(.not. used) .and. size(group%damping) > 0) then
             call fold(structure%map, group%lm(:, e), group%damping(:, :, e), folded)
+            rate = 0.0_wp
             call bound_element(structure%map, folded, m, c_diagonal, rate, one%massless_freedom)
          end if
          rate = sqrt(lambda + (rate/2.0_wp)**2) + rate/2.0_wp
@@ -153,15 +155,52 @@ contains
       type(dof_map_type), intent(in) :: map
       integer, intent(in) :: lm(:)               !! freedoms of the element
       real(wp), intent(in) :: matrix(:, :)
-      type(folded_type), intent(out) :: folded
-      integer :: i, k, column, n_terms
-      real(wp), allocatable :: t(:, :)
+      type(folded_type), intent(inout) :: folded
+      integer :: rows(size(lm)), i, n_terms
+      logical :: plain
 
       n_terms = 0
       do i = 1, size(lm)
          if (lm(i) > 0) n_terms = n_terms + map%first(lm(i) + 1) - map%first(lm(i))
       end do
-      allocate (folded%equation(n_terms), t(size(lm), n_terms))
+      if (allocated(folded%equation)) then
+         if (size(folded%equation) < n_terms) deallocate (folded%equation, folded%matrix)
+      end if
+      if (.not. allocated(folded%equation)) allocate (folded%equation(n_terms), &
+            folded%matrix(n_terms, n_terms))
+      folded%n = 0
+      plain = .true.
+      do i = 1, size(lm)
+         if (lm(i) == 0) cycle
+         associate (first => map%first(lm(i)), next => map%first(lm(i) + 1))
+            if (next == first) cycle
+            plain = next == first + 1 .and. abs(map%coefficient(first) - 1.0_wp) <= 0.0_wp &
+                  .and. all(folded%equation(:folded%n) /= map%equation(first))
+            if (.not. plain) exit
+            folded%n = folded%n + 1
+            folded%equation(folded%n) = map%equation(first)
+            rows(folded%n) = i
+         end associate
+      end do
+      if (plain) then
+         associate (n => folded%n)
+            folded%matrix(:n, :n) = matrix(rows(:n), rows(:n))
+         end associate
+      else
+         call fold_terms(map, lm, matrix, folded)
+      end if
+   end subroutine fold
+
+   !> The same where freedoms depend on others.
+   pure subroutine fold_terms(map, lm, matrix, folded)
+      type(dof_map_type), intent(in) :: map
+      integer, intent(in) :: lm(:)
+      real(wp), intent(in) :: matrix(:, :)
+      type(folded_type), intent(inout) :: folded
+      real(wp) :: t(size(lm), size(folded%equation))
+      integer :: i, k, column
+
+      folded%n = 0
       t = 0.0_wp
       do i = 1, size(lm)
          if (lm(i) == 0) cycle
@@ -175,8 +214,10 @@ contains
             t(i, column) = t(i, column) + map%coefficient(k)
          end do
       end do
-      folded%matrix = matmul(transpose(t(:, :folded%n)), matmul(matrix, t(:, :folded%n)))
-   end subroutine fold
+      associate (n => folded%n)
+         folded%matrix(:n, :n) = matmul(transpose(t(:, :n)), matmul(matrix, t(:, :n)))
+      end associate
+   end subroutine fold_terms
 
    !> Adds a group to the diagonals of K and C.
    subroutine sum_diagonals(structure, group, k_diagonal, c_diagonal)
@@ -184,25 +225,24 @@ contains
       type(group_type), intent(in) :: group
       real(wp), intent(inout) :: k_diagonal(:), c_diagonal(:)   !! (n_eq)
       real(wp) :: k(size(group%lm, 1), size(group%lm, 1))
+      type(folded_type) :: folded
       integer :: e
 
       do e = 1, size(group%lm, 2)
          call group%element%largest_stiffness(e, k)
-         call add_diagonal(structure%map, group%lm(:, e), k, k_diagonal)
+         call fold(structure%map, group%lm(:, e), k, folded)
+         call add_diagonal(folded, k_diagonal)
          if (size(group%damping) == 0) cycle
-         call add_diagonal(structure%map, group%lm(:, e), group%damping(:, :, e), c_diagonal)
+         call fold(structure%map, group%lm(:, e), group%damping(:, :, e), folded)
+         call add_diagonal(folded, c_diagonal)
       end do
    end subroutine sum_diagonals
 
-   pure subroutine add_diagonal(map, lm, matrix, diagonal)
-      type(dof_map_type), intent(in) :: map
-      integer, intent(in) :: lm(:)
-      real(wp), intent(in) :: matrix(:, :)
+   pure subroutine add_diagonal(folded, diagonal)
+      type(folded_type), intent(in) :: folded
       real(wp), intent(inout) :: diagonal(:)
-      type(folded_type) :: folded
       integer :: i
 
-      call fold(map, lm, matrix, folded)
       do i = 1, folded%n
          diagonal(folded%equation(i)) = diagonal(folded%equation(i)) + folded%matrix(i, i)
       end do
@@ -215,35 +255,33 @@ contains
       real(wp), intent(in) :: m(:), k_diagonal(:), c_diagonal(:)   !! (n_eq)
       type(critical_type), intent(inout) :: critical
       type(folded_type) :: folded
-      real(wp) :: k(size(group%lm, 1), size(group%lm, 1)), lambda
+      real(wp) :: k(size(group%lm, 1), size(group%lm, 1)), before
       integer :: e
 
       do e = 1, size(group%lm, 2)
          call group%element%largest_stiffness(e, k)
          call fold(structure%map, group%lm(:, e), k, folded)
-         call bound_element(structure%map, folded, m, k_diagonal, lambda, critical%massless_freedom)
-         if (lambda > critical%omega) then
-            critical%omega = lambda
-            critical%element = group%member(e)
-         end if
+         before = critical%omega
+         call bound_element(structure%map, folded, m, k_diagonal, critical%omega, &
+               critical%massless_freedom)
+         if (critical%omega > before) critical%element = group%member(e)
          if (size(group%damping) == 0) cycle
          call fold(structure%map, group%lm(:, e), group%damping(:, :, e), folded)
-         call bound_element(structure%map, folded, m, c_diagonal, lambda, critical%massless_freedom)
-         critical%damping_rate = max(critical%damping_rate, lambda)
+         call bound_element(structure%map, folded, m, c_diagonal, critical%damping_rate, &
+               critical%massless_freedom)
       end do
    end subroutine bound_group
 
-   !> Largest eigenvalue of a folded element matrix on its share of the mass; a freedom that it
-   !> acts on
-   !> and that has no mass is named.
+   !> Raises lambda to the largest eigenvalue of a folded element matrix on its share of the mass; a
+   !> freedom that it acts on and that has no mass is named.
    pure subroutine bound_element(map, folded, m, diagonal, lambda, massless_freedom)
       type(dof_map_type), intent(in) :: map
       type(folded_type), intent(in) :: folded
       real(wp), intent(in) :: m(:), diagonal(:)  !! (n_eq) mass, assembled diagonal
-      real(wp), intent(out) :: lambda
+      real(wp), intent(inout) :: lambda
       integer, intent(inout) :: massless_freedom
       integer :: rows(folded%n), n, i
-      real(wp) :: share(folded%n)
+      real(wp) :: share(folded%n), matrix(folded%n, folded%n)
 
       n = 0
       do i = 1, folded%n
@@ -258,7 +296,10 @@ contains
             share(n) = m(equation)*folded%matrix(i, i)/diagonal(equation)
          end associate
       end do
-      lambda = largest_eigenvalue(folded%matrix(rows(:n), rows(:n)), share(:n))
+      matrix(:n, :n) = folded%matrix(rows(:n), rows(:n))
+      if (has_larger_eigenvalue(matrix(:n, :n), share(:n), lambda)) then
+         lambda = max(lambda, largest_eigenvalue(matrix(:n, :n), share(:n)))
+      end if
    end subroutine bound_element
 
    !> The freedom that an equation stands for.

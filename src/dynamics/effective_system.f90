@@ -6,8 +6,10 @@ module effective_system
    use errors, only: error_type, new_error, status_numerical
    use clock, only: seconds_now
    use steps, only: solver_mumps
-   use skyline_matrix, only: skyline_type, profile_type, profile_entries, new_profile, new_skyline
-   use skyline_ldlt, only: factorize_skyline => factorize, solve_skyline => solve, ldlt_report_type
+   use skyline_matrix, only: skyline_type, profile_type, profile_entries, new_profile, &
+         new_skyline, combine
+   use skyline_ldlt, only: factorize_skyline => factorize, solve_skyline => solve, &
+         solve_skylines => solve_many, ldlt_report_type
    use sparse_matrix, only: pattern_type, sparse_report_type, is_same, diagonal_places
    use mumps_solver, only: mumps_type, mumps_available, analyse, discard, &
          factorize_sparse => factorize, solve_sparse => solve
@@ -180,9 +182,7 @@ contains
             end do
             self%has_parts = .true.
          end if
-         slot%matrix = self%parts(1)
-         slot%matrix%values = factors(1)*self%parts(1)%values &
-               + factors(2)*self%parts(2)%values + factors(3)*self%parts(3)%values
+         call combine(slot%matrix, factors, self%parts)
       end associate
    end subroutine fill_skyline
 
@@ -274,10 +274,13 @@ contains
       type(skyline_type), intent(out) :: matrix
       real(wp), intent(in) :: values(:)
       type(profile_type) :: profile
+      integer :: j
 
       call new_profile(profile, size(values))
       call new_skyline(matrix, profile)
-      matrix%values = values
+      do j = 1, size(values)
+         call matrix%add(j, j, values(j))
+      end do
    end subroutine make_diagonal
 
    subroutine name_singular(structure, equation, error)
@@ -317,17 +320,16 @@ contains
       real(wp), intent(inout) :: b(n, n_columns)
       type(error_type), allocatable :: failure
       real(wp) :: started
-      integer :: i
 
       started = seconds_now()
       associate (slot => self%slots(self%current))
          if (slot%is_sparse) then
             call solve_sparse(slot%sparse, b, failure)
             if (allocated(failure)) b = ieee_value(b, ieee_quiet_nan)
+         else if (n_columns == 1) then
+            call solve_skyline(slot%matrix, b(:, 1))
          else
-            do i = 1, n_columns
-               call solve_skyline(slot%matrix, b(:, i))
-            end do
+            call solve_skylines(slot%matrix, b)
          end if
       end associate
       self%n_solves = self%n_solves + n_columns

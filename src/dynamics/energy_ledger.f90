@@ -16,7 +16,7 @@ module energy_ledger
    public :: ledger_type, open_ledger, record_span, record_impact, close_increment
    public :: take_back_damping
    public :: record_friction, record_springs
-   public :: group_energies
+   public :: group_energies, record_found
 
    !> Energies and works since the start of the run.
    type :: ledger_type
@@ -32,6 +32,9 @@ module energy_ledger
       real(wp) :: initial = 0.0_wp
       real(wp) :: stored(2) = 0.0_wp            !! in contact springs: normal, tangential
       real(wp) :: scale = 0.0_wp                !! largest energy or work met so far
+      !> Kinetic and strain energy and plastic work at the end of the increment at hand, where the
+      !> step has found them on its way.
+      real(wp), allocatable :: found(:)
    end type ledger_type
 
 contains
@@ -122,16 +125,34 @@ contains
       self%stored = stored
    end subroutine record_springs
 
+   !> Works of an increment and energies at its end, found on the way.
+   pure subroutine record_found(self, external_work, damping, energies)
+      type(ledger_type), intent(inout) :: self
+      real(wp), intent(in) :: external_work, damping
+      real(wp), intent(in) :: energies(3)        !! kinetic, strain, plastic
+
+      self%external_work = self%external_work + external_work
+      self%damping = self%damping + damping
+      self%found = energies
+   end subroutine record_found
+
    !> Energies at the end of an increment and the balance error.
    subroutine close_increment(self, system, state)
       type(ledger_type), intent(inout) :: self
       type(system_type), intent(in) :: system
       type(state_type), intent(in) :: state
 
-      self%kinetic = dot_product(state%v, inertia_force(system%structure, state%v))/2.0_wp
-      self%strain = strain_energy(system%structure, state%d, state%history) &
-            + sum(self%stored)
-      self%plastic = plastic_work(system%structure, state%history)
+      if (allocated(self%found)) then
+         self%kinetic = self%found(1)
+         self%strain = self%found(2)
+         self%plastic = self%found(3)
+         deallocate (self%found)
+      else
+         self%kinetic = dot_product(state%v, inertia_force(system%structure, state%v))/2.0_wp
+         self%strain = strain_energy(system%structure, state%d, state%history)
+         self%plastic = plastic_work(system%structure, state%history)
+      end if
+      self%strain = self%strain + sum(self%stored)
       self%total = self%kinetic + self%strain
       self%balance_error = self%total + self%damping + self%plastic + self%friction &
             + self%impact_loss - self%external_work - self%initial

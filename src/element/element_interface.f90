@@ -4,6 +4,7 @@
 !> they keep nothing themselves, so a step that is not accepted leaves no trace.
 module element_interface
    use kinds, only: wp
+   use element_blocks, only: blocks_type
    implicit none
    private
 
@@ -30,6 +31,8 @@ module element_interface
       !> Smallest eigenvalue of the consistent mass in terms of the lumped one.
       real(wp) :: least_mass_share = 1.0_wp/3.0_wp
       logical :: linear = .true.            !! internal force proportional to displacement
+      !> The order of `add_chunk_forces`; elements without it have no chunks.
+      type(blocks_type) :: blocks
    contains
       procedure :: uses
       procedure :: stiffness
@@ -37,6 +40,7 @@ module element_interface
       procedure :: damping
       procedure :: mass
       procedure :: internal_force
+      procedure :: add_chunk_forces
       procedure :: strain_energy
       procedure :: plastic_work
       procedure :: recover
@@ -111,6 +115,20 @@ contains
       force = 0.0_wp
       updated = history
    end subroutine internal_force
+
+   !> The same forces of the elements of one chunk, in the plane and added at nodes that are
+   !> numbered for the chunk; its strain energy and plastic work at d added up. Elements are in the
+   !> order of the chunk, but histories in that of the group.
+   pure subroutine add_chunk_forces(self, chunk, ien, u, history, force, updated, energy)
+      class(element_type), intent(in) :: self
+      integer, intent(in) :: chunk
+      integer, intent(in), contiguous :: ien(:, :)        !! (n_nodes, elements of the chunk)
+      real(wp), intent(in), contiguous :: u(:, :)         !! (2, nodes of the chunk)
+      real(wp), intent(in) :: history(self%n_history, self%n_elements)   !! last accepted
+      real(wp), intent(inout), contiguous :: force(:, :)  !! (2, nodes of the chunk)
+      real(wp), intent(inout) :: updated(self%n_history, self%n_elements)
+      real(wp), intent(inout) :: energy(2)      !! strain energy, plastic work
+   end subroutine add_chunk_forces
 
    !> Elastic strain energy of all elements of the group together.
    pure function strain_energy(self, d, history) result(energy)

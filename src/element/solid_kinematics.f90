@@ -1,4 +1,5 @@
-!> Strains from displacements of a group of plane or axisymmetric solids, and forces from stresses.
+!> Strains from displacements of plane or axisymmetric solids, and forces from stresses, for each of
+!> the shapes that a group's elements have.
 !> Components are 11 22 33 12 with engineering shear strain; 33 is the hoop of axisymmetric solids.
 module solid_kinematics
    use kinds, only: wp
@@ -22,6 +23,7 @@ module solid_kinematics
       procedure :: strain_at
       procedure :: add_force
       procedure :: strain_matrix
+      procedure :: stiffness
    end type kinematics_type
 
 contains
@@ -191,5 +193,34 @@ contains
          end associate
       end do
    end function strain_matrix
+
+   !> Stiffness of an element with the same stress over strain at all points.
+   pure function stiffness(self, e, elastic, hourglass_stiffness) result(matrix)
+      class(kinematics_type), intent(in) :: self
+      integer, intent(in) :: e                  !! element
+      real(wp), intent(in) :: elastic(4, 4)
+      real(wp), intent(in) :: hourglass_stiffness
+      real(wp) :: matrix(2*size(self%gradient, 2), 2*size(self%gradient, 2))
+      real(wp) :: b(4, size(matrix, 1)), stress(4)
+      integer :: p, i, j
+
+      matrix = 0.0_wp
+      do p = 1, size(self%volume, 1)
+         b = self%strain_matrix(p, e)
+         do j = 1, size(b, 2)
+            stress = self%volume(p, e)*matmul(elastic, b(:, j))
+            do i = 1, size(b, 2)
+               matrix(i, j) = matrix(i, j) + dot_product(b(:, i), stress)
+            end do
+         end do
+      end do
+      if (size(self%hourglass, 2) == 0) return
+      do j = 1, size(self%hourglass, 1)
+         do i = 1, 2
+            matrix(i::2, 2*j - 2 + i) = matrix(i::2, 2*j - 2 + i) &
+                  + hourglass_stiffness*self%hourglass(:, e)*self%hourglass(j, e)
+         end do
+      end do
+   end function stiffness
 
 end module solid_kinematics

@@ -7,6 +7,7 @@ module impact_scene
    use equation_of_motion, only: system_type
    use energy_ledger, only: ledger_type, record_span, take_back_damping, record_impact, &
          record_friction, record_springs
+   use explicit_motion, only: explicit_motion_type
    use contact_geometry, only: contact_geometry_type
    use constraint_rows, only: rows_type, row_rates, row_accelerations, row_curvature, &
          acceleration_size, contact_forces, slip_increments, wall_work, law_penalty
@@ -84,6 +85,7 @@ module impact_scene
       type(contact_geometry_type) :: geometry
       type(impact_settings_type) :: settings
       type(ledger_type) :: ledger
+      type(explicit_motion_type) :: explicit     !! of steps that are wholly explicit
       type(event_type), allocatable :: events(:) !! grown by doubling
       integer :: n_events = 0                    !! since the last time they were fetched
       real(wp) :: dt = 0.0_wp                    !! of the increment at hand

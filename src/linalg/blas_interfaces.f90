@@ -4,7 +4,7 @@ module blas_interfaces
    implicit none
    private
 
-   public :: ddot, daxpy, dgesv, dposv, dsygv
+   public :: ddot, daxpy, dgemv, dgemm, dtrsm, dgesv, dposv, dsygv
 
    interface
       pure function ddot(n, x, incx, y, incy) result(dot)
@@ -22,6 +22,33 @@ module blas_interfaces
          real(wp), intent(in) :: alpha, x(*)
          real(wp), intent(inout) :: y(*)
       end subroutine daxpy
+
+      pure subroutine dgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
+         import :: wp
+         implicit none
+         character(len=1), intent(in) :: trans
+         integer, intent(in) :: m, n, lda, incx, incy
+         real(wp), intent(in) :: alpha, beta, a(lda, *), x(*)
+         real(wp), intent(inout) :: y(*)
+      end subroutine dgemv
+
+      pure subroutine dgemm(transa, transb, m, n, k, alpha, a, lda, b, ldb, beta, c, ldc)
+         import :: wp
+         implicit none
+         character(len=1), intent(in) :: transa, transb
+         integer, intent(in) :: m, n, k, lda, ldb, ldc
+         real(wp), intent(in) :: alpha, beta, a(lda, *), b(ldb, *)
+         real(wp), intent(inout) :: c(ldc, *)
+      end subroutine dgemm
+
+      pure subroutine dtrsm(side, uplo, transa, diag, m, n, alpha, a, lda, b, ldb)
+         import :: wp
+         implicit none
+         character(len=1), intent(in) :: side, uplo, transa, diag
+         integer, intent(in) :: m, n, lda, ldb
+         real(wp), intent(in) :: alpha, a(lda, *)
+         real(wp), intent(inout) :: b(ldb, *)
+      end subroutine dtrsm
 
       pure subroutine dgesv(n, nrhs, a, lda, pivots, b, ldb, info)
          import :: wp

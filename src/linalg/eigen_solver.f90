@@ -6,7 +6,7 @@
 !> by starting from a thousandth of trace K / trace M.
 module eigen_solver
    use kinds, only: wp
-   use skyline_matrix, only: skyline_type, diagonal, multiply
+   use skyline_matrix, only: skyline_type, diagonal, multiply, absolute
    use skyline_ldlt, only: factorize, ldlt_report_type
    use condensed_eigen, only: condense
    use shifted_lanczos, only: lanczos
@@ -100,7 +100,7 @@ contains
       type(ldlt_report_type) :: report
 
       factors = stiffness
-      factors%values = stiffness%values - sigma*mass%values
+      call factors%add_multiple(-sigma, mass)
       call factorize(factors, report)
       self%n_factorizations = self%n_factorizations + 1
       self%sigma = sigma
@@ -158,7 +158,7 @@ contains
       end do
       if (k < 1) return
       factors = stiffness
-      factors%values = stiffness%values - 0.5_wp*(lambda(k) + lambda(k + 1))*mass%values
+      call factors%add_multiple(-0.5_wp*(lambda(k) + lambda(k + 1)), mass)
       call factorize(factors, report)
       self%n_factorizations = self%n_factorizations + 1
       is_complete = report%zero_pivot > 0 .or. report%n_negative == k
@@ -174,10 +174,8 @@ contains
       real(wp) :: noise, noise_of_shift, quotient
       integer :: i
 
-      absolute_stiffness = stiffness
-      absolute_stiffness%values = abs(stiffness%values)
-      absolute_mass = mass
-      absolute_mass%values = abs(mass%values)
+      absolute_stiffness = absolute(stiffness)
+      absolute_mass = absolute(mass)
       deallocate (self%residual)
       allocate (self%residual(size(self%lambda)))
       do i = 1, size(self%lambda)

@@ -1,13 +1,14 @@
-!> Factorization A = L D Lt of a skyline matrix in place, by Crout's active columns, and the
-!> solution by forward reduction and back-substitution.
+!> Factorization A = L D Lt of a skyline matrix in place, and the solution by forward reduction and
+!> back-substitution.
 module skyline_ldlt
-   use kinds, only: wp, int64
-   use skyline_matrix, only: skyline_type
-   use blas_interfaces, only: ddot, daxpy
+   use kinds, only: wp
+   use skyline_matrix, only: skyline_type, diagonal
+   use panel_reduction, only: reduce_panels
+   use panel_solution, only: solve_panels, solve_panels_many
    implicit none
    private
 
-   public :: factorize, solve, ldlt_report_type
+   public :: factorize, solve, solve_many, ldlt_report_type
 
    !> A pivot smaller than this part of the diagonal entry it came from counts as zero.
    real(wp), parameter :: pivot_tolerance = 1.0e-13_wp
@@ -20,74 +21,63 @@ module skyline_ldlt
 
 contains
 
-   !> Overwrites the matrix by its factors: L above the diagonal, D on it. Stops at the first
-   !> vanishing (or not finite) pivot and names its equation.
-   pure subroutine factorize(matrix, report)
+   !> Overwrites the matrix by its factors, L and D. Stops at a vanishing (or not finite) pivot and
+   !> names the first equation that has one.
+   subroutine factorize(matrix, report)
       type(skyline_type), intent(inout) :: matrix
       type(ldlt_report_type), intent(out) :: report
-      integer :: j
-      real(wp) :: original, pivot
+      real(wp), allocatable :: pivots(:)
+      real(wp) :: alone
+      integer :: j, zero_coupled
 
+      call reduce_panels(matrix%layout, matrix%values, pivot_tolerance, pivots, zero_coupled)
       do j = 1, matrix%n
-         original = abs(matrix%values(matrix%last(j)))
-         call reduce_column(matrix, j)
-         pivot = matrix%values(matrix%last(j))
-         if (.not. abs(pivot) > pivot_tolerance*original .or. abs(pivot) > huge(pivot)) then
-            report%zero_pivot = j
-            return
+         if (matrix%layout%number(j) == 0) then
+            alone = matrix%values(matrix%layout%diagonal_at(j))
+            if (abs(alone) > 0.0_wp .and. abs(alone) <= huge(alone)) cycle
+         else
+            if (matrix%layout%number(j) /= zero_coupled) cycle
          end if
-         if (pivot < 0.0_wp) report%n_negative = report%n_negative + 1
+         report%zero_pivot = j
+         return
       end do
+      report%n_negative = count(diagonal(matrix) < 0.0_wp)
    end subroutine factorize
 
-   !> Turns column j into its part of Lt and its pivot.
-   pure subroutine reduce_column(matrix, j)
-      type(skyline_type), intent(inout) :: matrix
-      integer, intent(in) :: j
-      integer :: i, top, common
-      integer(int64) :: base_i, base_j
-      real(wp) :: u, l
-
-      top = matrix%first_row(j)
-      base_j = matrix%last(j) - j
-      do i = top + 1, j - 1
-         common = max(top, matrix%first_row(i))
-         if (common >= i) cycle
-         base_i = matrix%last(i) - i
-         matrix%values(base_j + i) = matrix%values(base_j + i) &
-               - ddot(i - common, matrix%values(base_i + common), 1, matrix%values(base_j &
-               + common), 1)
-      end do
-      do i = top, j - 1
-         u = matrix%values(base_j + i)
-         l = u/matrix%values(matrix%last(i))
-         matrix%values(base_j + i) = l
-         matrix%values(base_j + j) = matrix%values(base_j + j) - l*u
-      end do
-   end subroutine reduce_column
-
    !> Solves A x = b with the factors; b is overwritten by x.
-   pure subroutine solve(factors, b)
+   subroutine solve(factors, b)
       type(skyline_type), intent(in) :: factors   !! as `factorize` left it
       real(wp), intent(inout) :: b(factors%n)     !! right-hand side, then solution
-      integer :: j, top
-      integer(int64) :: address
+      real(wp) :: x(factors%layout%n_coupled)
 
-      do j = 1, factors%n
-         top = factors%first_row(j)
-         if (top == j) cycle
-         address = factors%last(j) - (j - top)
-         b(j) = b(j) - ddot(j - top, factors%values(address), 1, b(top), 1)
-      end do
-      do j = 1, factors%n
-         b(j) = b(j)/factors%values(factors%last(j))
-      end do
-      do j = factors%n, 1, -1
-         top = factors%first_row(j)
-         if (top == j) cycle
-         address = factors%last(j) - (j - top)
-         call daxpy(j - top, -b(j), factors%values(address), 1, b(top), 1)
-      end do
+      associate (layout => factors%layout)
+         if (layout%n_coupled > 0) then
+            x = pack(b, layout%number > 0)
+            call solve_panels(layout, factors%values, x)
+         end if
+         b = b/factors%values(layout%diagonal_at)
+         if (layout%n_coupled > 0) b = unpack(x, layout%number > 0, b)
+      end associate
    end subroutine solve
+
+   !> Solves A x = b for several right-hand sides at once.
+   subroutine solve_many(factors, b)
+      type(skyline_type), intent(in) :: factors   !! as `factorize` left it
+      real(wp), intent(inout) :: b(:, :)          !! (n, n_sides)
+      real(wp), allocatable :: x(:, :)
+      integer :: k
+
+      associate (layout => factors%layout)
+         allocate (x(layout%n_coupled, size(b, 2)))
+         do k = 1, size(b, 2)
+            if (layout%n_coupled > 0) x(:, k) = pack(b(:, k), layout%number > 0)
+         end do
+         call solve_panels_many(layout, factors%values, size(b, 2), x)
+         do k = 1, size(b, 2)
+            b(:, k) = b(:, k)/factors%values(layout%diagonal_at)
+            b(:, k) = unpack(x(:, k), layout%number > 0, b(:, k))
+         end do
+      end associate
+   end subroutine solve_many
 
 end module skyline_ldlt

@@ -1,28 +1,34 @@
 !> Symmetric matrix in skyline (profile) storage: each column from its first nonzero row down to
-!> the diagonal, one column after the other.
+!> the diagonal, by panels of columns.
 module skyline_matrix
    use kinds, only: wp, int64
-   use blas_interfaces, only: ddot, daxpy
+   use panel_layout, only: panel_layout_type, new_panel_layout
+   use panel_kernels, only: multiply_panel
    implicit none
    private
 
-   public :: skyline_type, new_skyline, profile_type, new_profile, couple
-   public :: profile_entries, profile_cost, diagonal, multiply
+   public :: skyline_type, new_skyline, profile_type, new_profile, couple, fill_column
+   public :: profile_entries, profile_cost, diagonal, multiply, combine, absolute, stored_bytes
+
+   !> Entries from which threads share the work on them.
+   integer(int64), parameter :: worth_threads = 1000000_int64
 
    !> First row of every column while a profile is being found.
    type :: profile_type
       integer :: n = 0
       integer, allocatable :: first_row(:)       !! (n) row of the topmost entry of column j
+      logical, allocatable :: coupled(:)         !! (n) whether column or row j has other entries
    end type profile_type
 
-   !> Entry (i, j), first_row(j) <= i <= j, stands at values(last(j) - (j - i)).
+   !> Entry (i, j) stands at values(layout%address(i, j)).
    type :: skyline_type
       integer :: n = 0
-      integer, allocatable :: first_row(:)       !! (n)
-      integer(int64), allocatable :: last(:)     !! (n) address of the diagonal entry of column j
+      type(panel_layout_type) :: layout
       real(wp), allocatable :: values(:)
    contains
       procedure :: add
+      procedure :: add_multiple
+      procedure :: entry => entry_of
       procedure :: is_diagonal
    end type skyline_type
 
@@ -35,7 +41,8 @@ contains
       integer :: j
 
       self%n = n
-      allocate (self%first_row(n))
+      allocate (self%first_row(n), self%coupled(n))
+      self%coupled = .false.
       do j = 1, n
          self%first_row(j) = j
       end do
@@ -49,28 +56,32 @@ contains
 
       if (.not. any(equations > 0)) return
       top = minval(equations, mask=equations > 0)
+      if (maxval(equations) == top) return
       do i = 1, size(equations)
          if (equations(i) < 1) cycle
          self%first_row(equations(i)) = min(self%first_row(equations(i)), top)
+         self%coupled(equations(i)) = .true.
       end do
    end subroutine couple
+
+   !> Widens a column of the profile so that it is full from row `top` on.
+   pure subroutine fill_column(self, column, top)
+      type(profile_type), intent(inout) :: self
+      integer, intent(in) :: column, top
+
+      if (top >= column) return
+      self%first_row(column) = min(self%first_row(column), top)
+      self%coupled(top:column) = .true.
+   end subroutine fill_column
 
    !> A zero matrix of the given profile.
    pure subroutine new_skyline(self, profile)
       type(skyline_type), intent(out) :: self
       type(profile_type), intent(in) :: profile
-      integer :: j
-      integer(int64) :: address
 
       self%n = profile%n
-      self%first_row = profile%first_row
-      allocate (self%last(self%n))
-      address = 0
-      do j = 1, self%n
-         address = address + j - self%first_row(j) + 1
-         self%last(j) = address
-      end do
-      allocate (self%values(address))
+      call new_panel_layout(self%layout, profile%first_row, profile%coupled)
+      allocate (self%values(self%layout%n_entries))
       self%values = 0.0_wp
    end subroutine new_skyline
 
@@ -81,9 +92,72 @@ contains
       real(wp), intent(in) :: value
       integer(int64) :: address
 
-      address = self%last(max(i, j)) - abs(j - i)
+      address = self%layout%address(i, j)
       self%values(address) = self%values(address) + value
    end subroutine add
+
+   !> Adds a multiple of another matrix of the same profile.
+   subroutine add_multiple(self, factor, other)
+      class(skyline_type), intent(inout) :: self
+      real(wp), intent(in) :: factor
+      type(skyline_type), intent(in) :: other
+      integer(int64) :: k
+
+      !$omp parallel do if (size(self%values, kind=int64) > worth_threads)
+      do k = 1, size(self%values, kind=int64)
+         self%values(k) = self%values(k) + factor*other%values(k)
+      end do
+      !$omp end parallel do
+   end subroutine add_multiple
+
+   !> The sum of multiples of three matrices of one profile.
+   subroutine combine(self, factors, parts)
+      type(skyline_type), intent(inout) :: self
+      real(wp), intent(in) :: factors(3)
+      type(skyline_type), intent(in) :: parts(3)
+      integer(int64) :: k
+
+      self%n = parts(1)%n
+      self%layout = parts(1)%layout
+      if (allocated(self%values)) then
+         if (size(self%values, kind=int64) /= self%layout%n_entries) deallocate (self%values)
+      end if
+      if (.not. allocated(self%values)) allocate (self%values(self%layout%n_entries))
+      !$omp parallel do if (size(self%values, kind=int64) > worth_threads)
+      do k = 1, size(self%values, kind=int64)
+         self%values(k) = factors(1)*parts(1)%values(k) + factors(2)*parts(2)%values(k) &
+               + factors(3)*parts(3)%values(k)
+      end do
+      !$omp end parallel do
+   end subroutine combine
+
+   !> The matrix of the absolute values.
+   pure function absolute(self) result(matrix)
+      type(skyline_type), intent(in) :: self
+      type(skyline_type) :: matrix
+
+      matrix = self
+      matrix%values = abs(matrix%values)
+   end function absolute
+
+   !> Entry (i, j), zero outside the profile. Of factors: D on the diagonal, L off it.
+   pure real(wp) function entry_of(self, i, j)
+      class(skyline_type), intent(in) :: self
+      integer, intent(in) :: i, j
+      integer(int64) :: address
+
+      address = self%layout%address(i, j)
+      entry_of = 0.0_wp
+      if (address > 0) entry_of = self%values(address)
+   end function entry_of
+
+   !> Memory of the matrix with its layout.
+   pure integer(int64) function stored_bytes(self)
+      type(skyline_type), intent(in) :: self
+
+      stored_bytes = self%layout%bytes() + storage_size(self%values)/8 &
+            *size(self%values, kind=int64)
+   end function stored_bytes
 
    !> Stored entries, the diagonal included.
    pure integer(int64) function profile_entries(self)
@@ -112,7 +186,7 @@ contains
       type(skyline_type), intent(in) :: self
       real(wp) :: values(self%n)
 
-      values = self%values(self%last)
+      values = self%values(self%layout%diagonal_at)
    end function diagonal
 
    !> A x.
@@ -120,17 +194,18 @@ contains
       type(skyline_type), intent(in) :: self
       real(wp), intent(in) :: x(self%n)
       real(wp) :: y(self%n)
-      integer :: j, top
-      integer(int64) :: address
+      real(wp), dimension(self%layout%n_coupled) :: inner_x, inner_y
+      integer :: j, p
 
-      y = 0.0_wp
+      y = self%values(self%layout%diagonal_at)*x
+      if (self%layout%n_coupled == 0) return
+      inner_x = pack(x, self%layout%number > 0)
+      inner_y = 0.0_wp
+      do p = 1, self%layout%n_panels
+         call multiply_panel(self%layout, p, self%values, inner_x, inner_y)
+      end do
       do j = 1, self%n
-         top = self%first_row(j)
-         address = self%last(j) - (j - top)
-         y(j) = y(j) + self%values(self%last(j))*x(j)
-         if (top == j) cycle
-         y(j) = y(j) + ddot(j - top, self%values(address), 1, x(top), 1)
-         call daxpy(j - top, x(j), self%values(address), 1, y(top), 1)
+         if (self%layout%number(j) > 0) y(j) = y(j) + inner_y(self%layout%number(j))
       end do
    end function multiply
 
@@ -139,7 +214,7 @@ contains
       class(skyline_type), intent(in) :: self
       logical :: diagonal
 
-      diagonal = size(self%values, kind=int64) == int(self%n, int64)
+      diagonal = self%layout%n_coupled == 0
    end function is_diagonal
 
 end module skyline_matrix

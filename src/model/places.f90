@@ -6,7 +6,9 @@ module places
    private
 
    public :: place_type, source_line_type, source_file_type, source_type
-   public :: fail_at, note_at, place_text, line_text
+   public :: new_source_file, source_line, fail_at, note_at, place_text, line_text
+
+   integer, parameter :: code_lf = 10, code_cr = 13
 
    !> A stretch of one deck line; line 0 means nowhere in particular.
    type :: place_type
@@ -17,15 +19,16 @@ module places
       integer :: card = 0     !! line of the keyword card it belongs to, 0 if it is the card
    end type place_type
 
-   !> One line as it stands in the file.
+   !> One line of text.
    type :: source_line_type
       character(len=:), allocatable :: text
    end type source_line_type
 
-   !> A deck file or one it includes.
+   !> A deck file or one it includes: line i is content(first(i):last(i)).
    type :: source_file_type
       character(len=:), allocatable :: name
-      type(source_line_type), allocatable :: lines(:)
+      character(len=:), allocatable :: content
+      integer, allocatable :: first(:), last(:)   !! (n_lines)
       integer :: n_lines = 0
    end type source_file_type
 
@@ -36,6 +39,52 @@ module places
    end type source_type
 
 contains
+
+   !> Takes over the text of a file and finds its lines: they end at line feeds; a carriage return
+   !> before one goes too.
+   pure subroutine new_source_file(self, name, content)
+      type(source_file_type), intent(out) :: self
+      character(len=*), intent(in) :: name
+      character(len=:), allocatable, intent(inout) :: content   !! not allocated afterwards
+      integer :: i, n, length
+
+      length = len(content)
+      n = 0
+      do i = 1, length
+         if (iachar(content(i:i)) == code_lf) n = n + 1
+      end do
+      if (length > 0) then
+         if (iachar(content(length:length)) /= code_lf) n = n + 1
+      end if
+      allocate (self%first(n), self%last(n))
+      self%name = name
+      self%n_lines = n
+      n = 1
+      if (length > 0) self%first(1) = 1
+      do i = 1, length
+         if (iachar(content(i:i)) /= code_lf) cycle
+         self%last(n) = i - 1
+         n = n + 1
+         if (i < length) self%first(n) = i + 1
+      end do
+      if (n == self%n_lines) self%last(n) = length
+      do i = 1, self%n_lines
+         if (self%last(i) < self%first(i)) cycle
+         if (iachar(content(self%last(i):self%last(i))) == code_cr) self%last(i) = self%last(i) - 1
+      end do
+      call move_alloc(content, self%content)
+   end subroutine new_source_file
+
+   !> A line as it stands in the file.
+   pure function source_line(source, file, line) result(text)
+      type(source_type), intent(in) :: source
+      integer, intent(in) :: file, line
+      character(len=:), allocatable :: text
+
+      associate (from => source%files(file))
+         text = from%content(from%first(line):from%last(line))
+      end associate
+   end function source_line
 
    !> Makes a deck error: what is wrong, "file:line", the card, the line with a caret, and the cure.
    pure subroutine fail_at(error, source, place, cause, cure)
@@ -87,9 +136,9 @@ contains
       if (.not. is_known(source, place)) return
       if (place%card > 0 .and. place%card /= place%line) then
          message = message//new_line('a')//'  card: '// &
-               printable(source%files(place%file)%lines(place%card)%text)
+               printable(source_line(source, place%file, place%card))
       end if
-      line = source%files(place%file)%lines(place%line)%text
+      line = source_line(source, place%file, place%line)
       first = max(1, place%column)
       length = place%length
       if (place%column == 0) then

@@ -88,21 +88,22 @@ contains
    pure function deck_text(source) result(text)
       type(source_type), intent(in) :: source
       character(len=:), allocatable :: text
-      integer :: f, i, n
+      integer :: f, i, n, length
 
       n = 0
       do f = 1, source%n_files
          do i = 1, source%files(f)%n_lines
-            n = n + len(source%files(f)%lines(i)%text) + 1
+            n = n + source%files(f)%last(i) - source%files(f)%first(i) + 2
          end do
       end do
       allocate (character(len=n) :: text)
       n = 0
       do f = 1, source%n_files
          do i = 1, source%files(f)%n_lines
-            associate (line => source%files(f)%lines(i)%text)
-               text(n + 1:n + len(line)) = line
-               n = n + len(line) + 1
+            associate (from => source%files(f))
+               length = from%last(i) - from%first(i) + 1
+               text(n + 1:n + length) = from%content(from%first(i):from%last(i))
+               n = n + length + 1
                text(n:n) = new_line('a')
             end associate
          end do

@@ -41,7 +41,7 @@ contains
             '           (default: beside the deck, with its name)'//nl// &
             '  check    reads the deck, builds the model and prints what a run would do'//nl// &
             '  --define overrides a *PARAMETER of the deck'//nl// &
-            '  --threads threads of the linear algebra library'//nl// &
+            '  --threads threads to work with'//nl// &
             '  --quiet  no progress on the terminal'//nl//nl// &
             'exit status: 0 done, 1 usage, 2 deck, 3 file, 4 numerical, 5 interrupted, 6 internal'
    end function usage_text

@@ -12,7 +12,8 @@ module run_report
    use transformation, only: impact_beta
    use impact_scene, only: event_impact, event_capture, event_release, event_contact, event_limit
    use automatic_groups, only: partition_type
-   use scene_setup, only: simulation_type, count_increments
+   use increment_count, only: count_increments
+   use scene_setup, only: simulation_type
    use run_log, only: log_type, say
    use command_line, only: version_text
    implicit none

@@ -7,9 +7,7 @@ module scene_setup
    use places, only: fail_at, note_at, source_line_type
    use model, only: model_type
    use mesh, only: scheme_implicit, scheme_explicit
-   use steps, only: step_type, procedure_static, procedure_dynamic, procedure_frequency, &
-         solver_skyline, solver_mumps
-   use mumps_solver, only: mumps_available
+   use steps, only: step_type, procedure_static, procedure_dynamic, procedure_frequency
    use histories, only: boundary_type, nodal_value_type
    use structure, only: structure_type, new_structure, freedom_name, diagonal_mass
    use redistributed_mass, only: mark_contact_nodes
@@ -17,20 +15,20 @@ module scene_setup
    use external_load, only: begin_loads
    use prescribed_motion, only: begin_motions, start_motions, prescribed_freedoms
    use equation_of_motion, only: system_type, impose
-   use solver_choice, only: work_type
+   use solver_setup, only: begin_matrices
    use critical_step, only: critical_type, find_critical
    use contact_pairs, only: contact_pair_list_type
    use impact_scene, only: scene_type, contact_motion_type, new_contact_motion
    use initial_contact, only: adjustment_type, build_rows, adjust_pairs, adjustment_remark, &
          check_overlaps, check_jump
    use impact_method, only: impact_method_type
+   use increment_count, only: count_increments
    use automatic_groups, only: partition_type, resolve_automatic
    use impact_factory, only: make_impact_method, check_method
    implicit none
    private
 
    public :: simulation_type, build_scene, begin_step, initial_motion, add_remark
-   public :: count_increments, last_increment, count_events
 
    !> All that a run computes with.
    type :: simulation_type
@@ -44,6 +42,9 @@ module scene_setup
       integer, allocatable :: deck_scheme(:)     !! (n_groups) as the deck has it
       type(source_line_type), allocatable :: remarks(:)
       type(ordering_type) :: ordering            !! of the equations, this step
+      logical, allocatable :: held(:)            !! (n_freedoms) prescribed when they were ordered
+      integer, allocatable :: ordered_scheme(:)  !! (n_groups) at that time
+      real(wp) :: critical_gamma = -1.0_wp       !! for which `critical` holds, -1 for none
       integer(int64) :: n_events(5) = 0          !! by event_ kinds, over the whole run
       integer :: most_touching = 0               !! rows in contact at once
    end type simulation_type
@@ -225,12 +226,11 @@ contains
          if (system%static) system%structure%groups%scheme = scheme_implicit
          if (step%explicit) system%structure%groups%scheme = scheme_explicit
          call begin_conditions(self, i_step, t)
-         call order_equations(system%structure, &
-               prescribed_freedoms(system%motions, system%structure%map%n_freedoms), &
-               self%model%equations, system%profile, self%ordering)
-         call begin_matrices(self, step, error)
+         call number_anew(self)
+         call begin_matrices(system, step, count_increments(step), self%model%source, error)
          if (allocated(error)) return
          call find_massless(system)
+         self%scene%explicit%ready = .false.
          call begin_loads(system%loads, system%structure, self%model, i_step, t)
          if (system%static) return
          ! the deck's initial velocities wait for the first dynamic step
@@ -247,34 +247,24 @@ contains
       end associate
    end subroutine begin_step
 
-   !> Chooses the solver for the work of a step: one factorization of K* and one of M if the
-   !> structure is linear, else some three iterations an increment; impacts are not foreseen.
-   subroutine begin_matrices(self, step, error)
+   !> Orders the equations, unless nothing has changed that they depend on.
+   subroutine number_anew(self)
       type(simulation_type), intent(inout) :: self
-      type(step_type), intent(in) :: step
-      type(error_type), allocatable, intent(out) :: error
-      type(work_type) :: work
+      logical :: held(self%scene%system%structure%map%n_freedoms)
 
-      if (step%solver == solver_mumps .and. .not. mumps_available()) then
-         call fail_at(error, self%model%source, step%solver_place, &
-               'SOLVER=MUMPS, but this program was built without MUMPS', 'take SOLVER=AUTO or ' &
-               //'SKYLINE, or build with the CMake option CAROM_MUMPS=ON')
-         return
-      end if
-      work%wanted = step%solver
-      if (step%procedure == procedure_frequency) work%wanted = solver_skyline
-      work%n_solves = real(count_increments(step), wp)
-      work%n_factorizations = 1.0_wp
       associate (system => self%scene%system)
-         if (.not. system%structure%is_linear) then
-            work%n_solves = 3.0_wp*work%n_solves
-            work%n_factorizations = work%n_solves
-         else if (.not. system%static) then
-            work%n_factorizations = 2.0_wp
+         held = prescribed_freedoms(system%motions, size(held))
+         if (allocated(self%held)) then
+            if (all(self%held .eqv. held) .and. &
+                  all(self%ordered_scheme == system%structure%groups%scheme)) return
          end if
-         call system%matrices%begin(system%structure, system%profile, work, error)
+         call order_equations(system%structure, held, self%model%equations, system%profile, &
+               self%ordering)
+         self%held = held
+         self%ordered_scheme = system%structure%groups%scheme
+         self%critical_gamma = -1.0_wp
       end associate
-   end subroutine begin_matrices
+   end subroutine number_anew
 
    !> The frames of a frequency step have frequencies for times: no other step may follow, and none
    !> before it but static ones.
@@ -312,38 +302,6 @@ contains
                'raise INC, or take larger increments')
       end associate
    end subroutine check_increments
-
-   !> Increments of a step; a remainder of more than round-off gets one of its own.
-   pure function count_increments(step) result(n)
-      type(step_type), intent(in) :: step
-      integer :: n
-
-      n = max(1, ceiling(step%duration/step%dt*(1.0_wp - 1.0e-9_wp)))
-   end function count_increments
-
-   !> Length of the last increment: the step's dt unless a remainder is left.
-   pure function last_increment(step, n) result(dt)
-      type(step_type), intent(in) :: step
-      integer, intent(in) :: n
-      real(wp) :: dt
-
-      dt = step%duration - (n - 1)*step%dt
-      if (abs(dt - step%dt) <= 1.0e-6_wp*step%dt) dt = step%dt
-   end function last_increment
-
-   !> Adds the events of the increment at hand to the count of the run; sees how many rows touch.
-   pure subroutine count_events(self)
-      type(simulation_type), intent(inout) :: self
-      integer :: i
-
-      do i = 1, self%scene%n_events
-         associate (kind => self%scene%events(i)%kind)
-            self%n_events(kind) = self%n_events(kind) + 1
-         end associate
-      end do
-      self%most_touching = max(self%most_touching, &
-            count(self%motion%touching .or. self%motion%lambda > 0.0_wp))
-   end subroutine count_events
 
    subroutine begin_conditions(self, i_step, t)
       type(simulation_type), intent(inout) :: self
@@ -391,8 +349,12 @@ contains
       real(wp), parameter :: slack = 1.0e-9_wp
 
       associate (structure => self%scene%system%structure, limit => self%critical(scheme_explicit))
-         call find_critical(structure, scheme_implicit, step%gamma, self%critical(scheme_implicit))
-         call find_critical(structure, scheme_explicit, step%gamma, limit)
+         if (abs(self%critical_gamma - step%gamma) > 0.0_wp) then
+            call find_critical(structure, scheme_implicit, step%gamma, &
+                  self%critical(scheme_implicit))
+            call find_critical(structure, scheme_explicit, step%gamma, limit)
+            self%critical_gamma = step%gamma
+         end if
          self%scene%system%omega_max = self%critical%omega
          if (limit%massless_freedom > 0) then
             call fail_at(error, self%model%source, step%procedure_place, &

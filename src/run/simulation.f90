@@ -15,8 +15,8 @@ module simulation
    use command_line, only: command_type, version_text
    use run_log, only: log_type, open_log, close_log, say, note, write_status
    use progress, only: progress_type, start_progress, show_progress, end_progress
-   use scene_setup, only: simulation_type, build_scene, begin_step, initial_motion, &
-         count_increments, last_increment, count_events
+   use scene_setup, only: simulation_type, build_scene, begin_step, initial_motion
+   use increment_count, only: count_increments, last_increment
    use step_start, only: start_step
    use increments, only: control_type, start_control, take_increment, take_automatic_increment
    use frequency_run, only: run_frequency_step
@@ -301,6 +301,20 @@ contains
          call check_balance(scene%ledger, step, motion%motion%t, error)
       end associate
    end subroutine finish_increment
+
+   !> Adds the events of the increment at hand to the count of the run; sees how many rows touch.
+   pure subroutine count_events(self)
+      type(simulation_type), intent(inout) :: self
+      integer :: i
+
+      do i = 1, self%scene%n_events
+         associate (kind => self%scene%events(i)%kind)
+            self%n_events(kind) = self%n_events(kind) + 1
+         end associate
+      end do
+      self%most_touching = max(self%most_touching, &
+            count(self%motion%touching .or. self%motion%lambda > 0.0_wp))
+   end subroutine count_events
 
    !> How Newton's method went in an increment (its last solution, where it has several).
    subroutine note_residuals(scene, increment, log)

@@ -3,7 +3,9 @@
 A script makes one `Checks` object, calls its `at_most`, `close`, `true` with a sentence each, and
 ends with `checks.finish()`, which prints a line a check and exits 1 if one failed.
 """
+import atexit
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -35,9 +37,16 @@ class Run:
                 for name, data in self.file['events'].items()}
 
 
+def scratch_folder():
+    """A new folder that goes when the script ends."""
+    folder = Path(tempfile.mkdtemp(prefix='carom_'))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return folder
+
+
 def run_deck(deck, command='run', expect_status=0, **definitions):
     """Runs `carom` (given as the first argument of the script) on a deck: a path, or the text of one."""
-    folder = Path(tempfile.mkdtemp(prefix='carom_'))
+    folder = scratch_folder()
     if '\n' in str(deck):
         path = folder / 'deck.inp'
         path.write_text(deck)
@@ -53,22 +62,25 @@ def run_deck(deck, command='run', expect_status=0, **definitions):
     done = subprocess.run(words, capture_output=True, text=True, timeout=600,
                           env={**os.environ, 'OPENBLAS_NUM_THREADS': '1'})
     if done.returncode != expect_status:
-        print(done.stdout + done.stderr)
-        sys.exit(f'FAILED: {" ".join(words)} ended with {done.returncode}, not {expect_status}')
+        sys.exit(f'FAILED: {" ".join(words)} ended with {done.returncode}, not {expect_status}:\n'
+                 + done.stdout + done.stderr)
     return Run(done.returncode, done.stdout + done.stderr, result)
 
 
 class Checks:
-    """Collects what was checked; every check prints its figure."""
+    """Collects what was checked; in the end each check prints its figure, the failed ones first."""
 
     def __init__(self):
-        self.failed = 0
-        self.count = 0
+        self.lines = {True: [], False: []}
+        atexit.register(self._print)
 
     def _say(self, good, sentence):
-        self.count += 1
-        self.failed += not good
-        print(('ok      ' if good else 'FAILED  ') + sentence)
+        self.lines[bool(good)].append(('ok      ' if good else 'FAILED  ') + sentence)
+
+    def _print(self):
+        failed, passed = self.lines[False], self.lines[True]
+        print('\n'.join([*failed, *passed,
+                         f'{len(passed)} of {len(passed) + len(failed)} checks passed']))
 
     def at_most(self, value, limit, sentence):
         """value <= limit; NaN fails."""
@@ -93,5 +105,4 @@ class Checks:
 
     def finish(self):
         """Ends the script: status 1 if a check failed or none was made."""
-        print(f'{self.count - self.failed} of {self.count} checks passed')
-        sys.exit(0 if self.count and not self.failed else 1)
+        sys.exit(0 if self.lines[True] and not self.lines[False] else 1)

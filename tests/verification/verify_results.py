@@ -3,13 +3,12 @@ import os
 import re
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
 import h5py
 import numpy as np
 
-from carom_case import ROOT, Checks, run_deck
+from carom_case import ROOT, Checks, run_deck, scratch_folder
 
 PROGRAM = str(Path(sys.argv[1]).resolve())
 HERE = Path(__file__).parent
@@ -128,7 +127,7 @@ U
 
 def carom(*words, deck=None):
     """Runs the program in a new folder, with `deck` there as deck.inp; the run and the folder."""
-    folder = Path(tempfile.mkdtemp(prefix='carom_'))
+    folder = scratch_folder()
     if deck is not None:
         (folder/'deck.inp').write_text(deck)
     done = subprocess.run([PROGRAM, *words], capture_output=True, text=True, cwd=folder,

@@ -17,11 +17,9 @@ contains
       real(wp) :: a(matrix%n, matrix%n)
       integer :: i, j
 
-      a = 0.0_wp
       do j = 1, matrix%n
-         do i = matrix%first_row(j), j
-            a(i, j) = matrix%values(matrix%last(j) - (j - i))
-            a(j, i) = a(i, j)
+         do i = 1, matrix%n
+            a(i, j) = matrix%entry(i, j)
          end do
       end do
    end function as_dense
