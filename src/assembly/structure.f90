@@ -11,6 +11,8 @@ module structure
    use redistributed_mass, only: redistribute_mass
    use dof_map, only: dof_map_type, new_dof_map
    use element_chunks, only: new_chunks, add_forces_of_chunks
+   use sparse_operator, only: sparse_operator_type, add_product
+   use consistent_mass, only: build_consistent_mass
    implicit none
    private
 
@@ -24,6 +26,7 @@ module structure
       type(dof_map_type) :: map
       type(group_type), allocatable :: groups(:)
       real(wp), allocatable :: lumped_mass(:)    !! (n_freedoms) of the lumped groups
+      type(sparse_operator_type) :: coupled_mass !! of the other groups, where it is kept
       logical :: has_consistent_mass = .false.
       logical :: is_linear = .true.
       integer :: n_history = 0                   !! history variables of all elements
@@ -66,6 +69,7 @@ contains
          self%n_history = self%n_history &
                + self%groups(g)%element%n_history*self%groups(g)%element%n_elements
       end do
+      call build_consistent_mass(self%groups, self%map%n_freedoms, self%coupled_mass)
       allocate (self%lumped_mass(self%map%n_freedoms))
       self%lumped_mass = 0.0_wp
       do g = 1, size(self%groups)
@@ -267,6 +271,10 @@ contains
       integer :: g, e
 
       force = self%lumped_mass*a
+      if (self%coupled_mass%n > 0) then
+         call add_product(self%coupled_mass, a, force)
+         return
+      end if
       do g = 1, size(self%groups)
          if (self%groups(g)%lumped) cycle
          allocate (local(size(self%groups(g)%lm, 1), size(self%groups(g)%lm, 2)))

@@ -123,7 +123,7 @@ contains
       character(len=word_length), parameter :: solutions(*) = [character(len=word_length) :: &
             'ITERATION', 'DIRECT']
       character(len=word_length), parameter :: events(*) = [character(len=word_length) :: &
-            'SUBSTEP', '~ANCHOR']
+            'SUBSTEP', 'ANCHOR']
       integer :: choice
 
       call get_word(card, 'METHOD', method_words, choice, source, error)
@@ -133,6 +133,12 @@ contains
       if (allocated(error)) return
       interaction%direct = choice == 2
       call get_word(card, 'EVENTS', events, choice, source, error)
+      if (allocated(error)) return
+      interaction%anchored = choice == 2
+      if (.not. (interaction%anchored .and. has_parameter(card, 'BETA'))) return
+      call fail_at(error, source, parameter_place(card, 'BETA'), 'BETA means nothing with ' &
+            //'EVENTS=ANCHOR: a step with an impact is like any other', &
+            cure='remove it, or take EVENTS=SUBSTEP')
    end subroutine read_method
 
    !> A parameter that a method would ignore is an error.

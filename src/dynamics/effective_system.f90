@@ -54,6 +54,7 @@ module effective_system
       integer(int64) :: clock = 0
       integer(int64), public :: n_factorizations = 0
       integer(int64), public :: n_solves = 0
+      integer(int64), public :: generation = 0    !! how often all matrices have been dropped
       real(wp), public :: factor_seconds = 0.0_wp   !! elapsed in factorizations
       real(wp), public :: solve_seconds = 0.0_wp
    contains
@@ -63,6 +64,7 @@ module effective_system
       procedure :: solve_many
       procedure :: forget
       procedure :: release
+      procedure :: current_factors
    end type effective_system_type
 
 contains
@@ -79,12 +81,21 @@ contains
       class(effective_system_type), intent(inout) :: self
       integer :: i
 
+      self%generation = self%generation + 1
       self%has_parts = .false.
       do i = 1, n_slots
          self%slots(i)%factors = -1.0_wp
          self%slots(i)%last_use = -1
       end do
    end subroutine forget
+
+   !> c_m, c_c, c_k of the matrix last prepared.
+   pure function current_factors(self) result(factors)
+      class(effective_system_type), intent(in) :: self
+      real(wp) :: factors(3)
+
+      factors = self%slots(self%current)%factors
+   end function current_factors
 
    !> Begins a step: drops every matrix and chooses the solver for the work to come. The analysis
    !> of a sparse matrix stays where the pattern is that of the step before.

@@ -4,7 +4,7 @@
 module energy_ledger
    use kinds, only: wp
    use mesh, only: scheme_implicit, scheme_explicit
-   use structure, only: strain_energy, plastic_work, group_strain_energy, &
+   use structure, only: elastic_force, strain_energy, plastic_work, group_strain_energy, &
          group_kinetic_energy, damping_force, inertia_force
    use external_load, only: load_at
    use motion_state, only: state_type
@@ -149,8 +149,7 @@ contains
          deallocate (self%found)
       else
          self%kinetic = dot_product(state%v, inertia_force(system%structure, state%v))/2.0_wp
-         self%strain = strain_energy(system%structure, state%d, state%history)
-         self%plastic = plastic_work(system%structure, state%history)
+         call find_stored(system, state, self%strain, self%plastic)
       end if
       self%strain = self%strain + sum(self%stored)
       self%total = self%kinetic + self%strain
@@ -158,6 +157,30 @@ contains
             + self%impact_loss - self%external_work - self%initial
       self%scale = max(self%scale, abs(self%total), abs(self%external_work))
    end subroutine close_increment
+
+   !> Strain energy and plastic work; of a linear structure along with the forces, which are quicker
+   !> to find than strains.
+   subroutine find_stored(system, state, strain, plastic)
+      type(system_type), intent(in) :: system
+      type(state_type), intent(in) :: state
+      real(wp), intent(out) :: strain, plastic
+      real(wp) :: force(size(state%d)), updated(size(state%history)), energy(2)
+
+      if (.not. system%structure%is_linear) then
+         strain = strain_energy(system%structure, state%d, state%history)
+         plastic = plastic_work(system%structure, state%history)
+         return
+      end if
+      force = 0.0_wp
+      energy = 0.0_wp
+      updated = state%history
+      call elastic_force(system%structure, scheme_implicit, state%d, state%history, force, updated, &
+            energy)
+      call elastic_force(system%structure, scheme_explicit, state%d, state%history, force, updated, &
+            energy)
+      strain = energy(1)
+      plastic = energy(2)
+   end subroutine find_stored
 
    !> Kinetic and strain energy of every group, one after the other.
    function group_energies(system, state) result(energies)

@@ -16,7 +16,8 @@ module equation_of_motion
 
    public :: system_type
    public :: predict_motion, fixed_force, residual, solve_motion, prepare_motion
-   public :: prepare_mass, solve_mass, force_balance, impose, resisting_force, settle_massless
+   public :: prepare_mass, solve_mass, solve_together, force_balance, impose, resisting_force
+   public :: settle_massless
    public :: rigid_mass
 
    !> A structure under the loads and conditions of a step, with its matrices.
@@ -94,7 +95,8 @@ contains
 
       psi = fixed - (1.0_wp + merge(0.0_wp, self%newmark%alpha, self%static)) &
             *resisting_force(self, scheme_implicit, trial, history)
-      if (.not. self%static) psi = psi - inertia_force(self%structure, trial%a)
+      if (self%static .or. .not. any(abs(trial%a) > 0.0_wp)) return
+      psi = psi - inertia_force(self%structure, trial%a)
    end function residual
 
    !> S(d) + C v of the groups of a scheme; no damping in a static step.
@@ -215,5 +217,24 @@ contains
       call self%matrices%solve(b)
       motion = expand(self%structure%map, b)
    end function solve_mass
+
+   !> `solve_motion` (or, on the mass, `solve_mass`) for several forces at once.
+   subroutine solve_together(self, on_mass, forces)
+      type(system_type), intent(inout) :: self
+      logical, intent(in) :: on_mass
+      real(wp), intent(inout) :: forces(:, :)    !! (n_freedoms, n), then the motions
+      real(wp), allocatable :: b(:, :)
+      integer :: j
+
+      allocate (b(self%structure%map%n_eq, size(forces, 2)))
+      do j = 1, size(b, 2)
+         b(:, j) = reduce(self%structure%map, forces(:, j))
+         if (on_mass) where (self%massless) b(:, j) = 0.0_wp
+      end do
+      call self%matrices%solve_many(b)
+      do j = 1, size(b, 2)
+         forces(:, j) = expand(self%structure%map, b(:, j))
+      end do
+   end subroutine solve_together
 
 end module equation_of_motion

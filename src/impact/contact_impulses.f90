@@ -16,7 +16,7 @@ module contact_impulses
          slip_products, rate_size, gap_size, wall_rates, contact_forces, sticks, &
          law_penalty
    use impact_scene, only: scene_type, contact_motion_type, note_contact_force, gap_tolerance
-   use row_compliance, only: compliance_type, mass_compliance, join_rates, split_forces
+   use row_compliance, only: compliance_type, mass_compliance, pushed, join_rates, split_forces
    use rough_rows, only: solve_rows
    implicit none
    private
@@ -140,7 +140,7 @@ contains
             return
          end if
          call split_forces(compliance, forces, motion%lambda, motion%tau)
-         motion%motion%a = motion%motion%a + matmul(compliance%x, forces)
+         motion%motion%a = motion%motion%a + pushed(scene, compliance, forces)
       end if
       motion%sticking = held .and. sticks(scene%rows, motion%lambda, motion%tau)
       call note_contact_force(scene, motion)
@@ -209,7 +209,7 @@ contains
       impulse = 0.0_wp
       impulse(compliance%rows) = p - available(compliance%rows)
       v_before = motion%motion%v
-      motion%motion%v = v_before + matmul(compliance%x, impulse(compliance%rows))
+      motion%motion%v = v_before + pushed(scene, compliance, impulse(compliance%rows))
       after = row_rates(scene%rows, motion%motion)
       call book_impulse(scene, motion, impulse, rates, after)
       call book_reactions(scene, motion, v_before, impulse, 0.0_wp*impulse)
@@ -237,7 +237,7 @@ contains
       if (allocated(error)) return
       if (maxval(abs(gaps)) > gap_limit) then
          call solve_equality(compliance%w, gaps(compliance%rows), p, solved)
-         call shift(scene, motion, matmul(compliance%x, p))
+         call shift(scene, motion, pushed(scene, compliance, p))
       end if
       if (maxval(abs(rates)) <= rate_limit) return
       rates = 0.0_wp
@@ -310,7 +310,7 @@ contains
          return
       end if
       v_before = motion%motion%v
-      motion%motion%v = v_before + matmul(compliance%x, p)
+      motion%motion%v = v_before + pushed(scene, compliance, p)
       impulse(compliance%rows) = p
       after = row_rates(scene%rows, motion%motion)
       call book_impulse(scene, motion, impulse, before, after)

@@ -6,7 +6,7 @@ module gap_path
    implicit none
    private
 
-   public :: path_type, new_path, path_value, find_dip, find_rise
+   public :: path_type, new_path, new_hermite_path, path_value, find_dip, find_rise, find_root
 
    !> Gap of one row over a step of length s.
    type :: path_type
@@ -29,6 +29,50 @@ contains
       path%b = a0/2.0_wp
       path%c = (g1 - g0 - r0*s - path%b*s**2)/s**3
    end function new_path
+
+   !> The cubic through gap and rate at both ends.
+   pure function new_hermite_path(s, g, r) result(path)
+      real(wp), intent(in) :: s              !! length of the step
+      real(wp), intent(in) :: g(2), r(2)     !! gap and its rate at start and end
+      type(path_type) :: path
+      real(wp) :: mean
+
+      mean = (g(2) - g(1))/s
+      path%s = s
+      path%g0 = g(1)
+      path%r0 = r(1)
+      path%b = (3.0_wp*mean - 2.0_wp*r(1) - r(2))/s
+      path%c = (r(1) + r(2) - 2.0_wp*mean)/s**2
+   end function new_hermite_path
+
+   !> Where between low, with the gap open, and high, with an overlap, the gap is zero, to
+   !> round-off: Newton's method, halving where it leaves the bracket.
+   pure function find_root(path, low, high) result(x)
+      type(path_type), intent(in) :: path
+      real(wp), intent(in) :: low, high
+      real(wp) :: x
+      integer, parameter :: max_trials = 200
+      real(wp) :: bracket(2), g, slope
+      integer :: i
+
+      bracket = [low, high]
+      x = (low + high)/2.0_wp
+      do i = 1, max_trials
+         g = path_value(path, x)
+         if (g > 0.0_wp) then
+            bracket(1) = x
+         else
+            bracket(2) = x
+         end if
+         slope = path%r0 + x*(2.0_wp*path%b + 3.0_wp*x*path%c)
+         if (abs(g) <= spacing(path%s)*abs(slope)) return
+         x = (bracket(1) + bracket(2))/2.0_wp
+         if (bracket(2) - bracket(1) <= spacing(path%s)) return
+         if (.not. slope < 0.0_wp) cycle
+         slope = (merge(bracket(1), bracket(2), g > 0.0_wp) - g/slope)
+         if (slope > bracket(1) .and. slope < bracket(2)) x = slope
+      end do
+   end function find_root
 
    !> Gap at x.
    pure function path_value(path, x) result(g)

@@ -7,17 +7,20 @@ module impact_factory
    use steps, only: step_type, procedure_dynamic
    use surfaces, only: interaction_type, method_fictitious_force, method_penalty, method_lagrange
    use contact_pairs, only: contact_pair_list_type
-   use impact_scene, only: impact_settings_type
+   use mesh, only: scheme_explicit
+   use constraint_rows, only: law_motion
+   use impact_scene, only: impact_settings_type, scene_type
    use impact_method, only: impact_method_type
    use no_impact, only: no_impact_type
    use transformation, only: transformation_type
+   use anchored_impacts, only: anchored_type
    use fictitious_force, only: fictitious_force_type
    use penalty_method, only: penalty_method_type
    use lagrange_multiplier, only: lagrange_multiplier_type
    implicit none
    private
 
-   public :: make_impact_method, check_method
+   public :: make_impact_method, check_method, check_anchor
 
 contains
 
@@ -40,7 +43,7 @@ contains
       do i = 2, size(list%rows)
          if (agree(first, model%interactions(list%rows(i)%interaction))) cycle
          call fail_at(error, model%source, model%interactions(list%rows(i)%interaction)%place, &
-               'the interactions differ in METHOD, BETA, MAX EVENTS, RETURN or SOLUTION', &
+               'the interactions differ in METHOD, EVENTS, BETA, MAX EVENTS, RETURN or SOLUTION', &
                'one run has one of each; RESTITUTION and CAPTURE may differ')
          return
       end do
@@ -50,6 +53,7 @@ contains
       settings%max_events = first%max_events
       settings%return_parameter = first%return_parameter
       settings%direct = first%direct
+      settings%anchored = first%anchored
       settings%fictitious = first%method == method_fictitious_force
       settings%iterated = settings%fictitious .and. .not. &
             any(model%interactions(list%rows%interaction)%friction > 0.0_wp)
@@ -63,7 +67,11 @@ contains
       case (method_lagrange)
          allocate (lagrange_multiplier_type :: method)
       case default
-         allocate (transformation_type :: method)
+         if (settings%anchored) then
+            allocate (anchored_type :: method)
+         else
+            allocate (transformation_type :: method)
+         end if
       end select
    end subroutine make_impact_method
 
@@ -89,12 +97,41 @@ contains
       end if
    end subroutine check_method
 
+   !> Steps of one size that begin at events, and the cubic inside them, are for linear implicit
+   !> elements, fixed increments and contact rows that stay as they are.
+   subroutine check_anchor(model, scene, step, error)
+      type(model_type), intent(in) :: model
+      type(scene_type), intent(in) :: scene
+      type(step_type), intent(in) :: step
+      type(error_type), allocatable, intent(out) :: error
+      character(len=:), allocatable :: what
+
+      if (.not. scene%settings%anchored .or. step%procedure /= procedure_dynamic) return
+      if (.not. step%direct) then
+         what = 'automatic increments'
+      else if (.not. scene%system%structure%is_linear) then
+         what = 'nonlinear elements'
+      else if (any(scene%system%structure%groups%scheme == scheme_explicit)) then
+         what = 'explicit elements'
+      else if (scene%rows%moving) then
+         what = 'bodies that slide on each other or on a circle'
+      else if (any(scene%rows%amplitude > 0)) then
+         what = 'a moving rigid surface'
+      else if (any(scene%rows%law /= law_motion)) then
+         what = 'contact nodes without mass'
+      end if
+      if (allocated(what)) call fail_at(error, model%source, step%procedure_place, &
+            'EVENTS=ANCHOR cannot do with '//what, &
+            'take EVENTS=SUBSTEP, the default, on *IMPACT')
+   end subroutine check_anchor
+
    pure function agree(one, other) result(same)
       type(interaction_type), intent(in) :: one, other
       logical :: same
 
       same = one%method == other%method .and. one%beta_choice == other%beta_choice .and. &
-            one%max_events == other%max_events .and. (one%direct .eqv. other%direct) .and. &
+            one%max_events == other%max_events .and. (one%anchored .eqv. other%anchored) .and. &
+            (one%direct .eqv. other%direct) .and. &
             .not. abs(one%beta - other%beta) > 0.0_wp .and. &
             .not. abs(one%return_parameter - other%return_parameter) > 0.0_wp
    end function agree

@@ -6,7 +6,7 @@ module impact_jump
    use constraint_rows, only: row_rates, slip_rates
    use impact_scene, only: scene_type, contact_motion_type, event_type, record_event, &
          capture_speeds, event_impact, event_capture, event_limit
-   use row_compliance, only: compliance_type, mass_compliance, join_rates, split_forces
+   use row_compliance, only: compliance_type, mass_compliance, pushed, join_rates, split_forces
    use rough_rows, only: solve_rows
    use contact_impulses, only: hold_acceleration, restart_acceleration, project_touching, &
          book_impulse, book_friction, book_reactions, dependent_impulses
@@ -97,7 +97,7 @@ contains
             return
          end if
          call split_forces(compliance, p, impulse, friction)
-         motion%motion%v = v_before + matmul(compliance%x, p)
+         motion%motion%v = v_before + pushed(scene, compliance, p)
          motion%jump = jump_before + (motion%motion%v - v_before)
          after = row_rates(scene%rows, motion%motion)
          held = motion%touching .or. (impact%new .and. .not. e > 0.0_wp) .or. &

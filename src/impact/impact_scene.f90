@@ -8,13 +8,14 @@ module impact_scene
    use energy_ledger, only: ledger_type, record_span, take_back_damping, record_impact, &
          record_friction, record_springs
    use explicit_motion, only: explicit_motion_type
+   use compliance_store, only: compliance_store_type
    use contact_geometry, only: contact_geometry_type
    use constraint_rows, only: rows_type, row_rates, row_accelerations, row_curvature, &
          acceleration_size, contact_forces, slip_increments, wall_work, law_penalty
    implicit none
    private
 
-   public :: scene_type, contact_motion_type, event_type, impact_settings_type
+   public :: scene_type, contact_motion_type, event_type, impact_settings_type, anchor_type
    public :: event_impact, event_capture, event_release, event_contact, event_limit
    public :: new_contact_motion, record_event, record_residual, accept_span, capture_speeds
    public :: note_contact_force, opening_rows, let_go
@@ -62,6 +63,8 @@ module impact_scene
       real(wp) :: rate_after = 0.0_wp
       real(wp) :: impulse = 0.0_wp
       real(wp) :: beta = 0.0_wp                  !! of the impact step
+      integer(int64) :: n_solves = 0             !! of the run up to then
+      integer(int64) :: n_factorizations = 0
    end type event_type
 
    !> What the deck says of the method.
@@ -76,16 +79,30 @@ module impact_scene
       real(wp) :: return_parameter = 0.3_wp      !! alpha
       logical :: direct = .false.
       logical :: locate_release = .true.
+      logical :: anchored = .false.              !! EVENTS=ANCHOR
    end type impact_settings_type
+
+   !> The step at hand of a motion whose steps begin at events, not at the deck's times: from one
+   !> state to another, after which something may happen.
+   type :: anchor_type
+      logical :: running = .false.               !! the step reaches beyond the deck's time
+      real(wp) :: dt = 0.0_wp                    !! every step's size
+      type(contact_motion_type) :: from, to
+      logical, allocatable :: held(:)            !! (n_rows) rows that touch to the end
+      logical, allocatable :: hit(:)             !! (n_rows) rows that are hit then
+      logical, allocatable :: release(:)         !! (n_rows) rows that let go then
+   end type anchor_type
 
    !> Everything an impact method needs besides the motion.
    type :: scene_type
       type(system_type) :: system
       type(rows_type) :: rows
       type(contact_geometry_type) :: geometry
+      type(compliance_store_type) :: compliances
       type(impact_settings_type) :: settings
       type(ledger_type) :: ledger
       type(explicit_motion_type) :: explicit     !! of steps that are wholly explicit
+      type(anchor_type) :: anchor
       type(event_type), allocatable :: events(:) !! grown by doubling
       integer :: n_events = 0                    !! since the last time they were fetched
       real(wp) :: dt = 0.0_wp                    !! of the increment at hand
@@ -132,7 +149,7 @@ contains
       scene%residuals(scene%n_residuals) = residual
    end subroutine record_residual
 
-   !> Notes an event.
+   !> Notes an event, and how much has been solved until then.
    pure subroutine record_event(scene, event)
       type(scene_type), intent(inout) :: scene
       type(event_type), intent(in) :: event
@@ -146,6 +163,8 @@ contains
       end if
       scene%n_events = scene%n_events + 1
       scene%events(scene%n_events) = event
+      scene%events(scene%n_events)%n_solves = scene%system%matrices%n_solves
+      scene%events(scene%n_events)%n_factorizations = scene%system%matrices%n_factorizations
    end subroutine record_event
 
    !> Keeps the contact forces that the acceleration holds.

@@ -38,7 +38,7 @@ module lagrange_multiplier
          note_contact_force, opening_rows, let_go, event_impact, event_capture, gap_tolerance, &
          rate_tolerance
    use impact_method, only: impact_method_type
-   use row_compliance, only: compliance_type, mass_compliance, join_rates, split_forces
+   use row_compliance, only: compliance_type, mass_compliance, pushed, join_rates, split_forces
    use rough_rows, only: solve_rows
    use contact_impulses, only: carry_acceleration, project_touching, follow_wall, book_impulse, &
          book_friction, book_reactions, dependent_impulses
@@ -133,7 +133,8 @@ contains
       call mass_compliance(scene, marked, compliance, error, .true.)
       if (allocated(error)) return
       lambda = 0.0_wp
-      call solve_marked(compliance, gaps(compliance%rows)*2.0_wp/dt**2, lambda, force, solved)
+      call solve_marked(scene, compliance, gaps(compliance%rows)*2.0_wp/dt**2, lambda, force, &
+            solved)
       if (.not. solved) then
          call dependent_impulses(error)
          return
@@ -160,7 +161,8 @@ contains
    end subroutine book_rates
 
    !> Complementary forces of a compliance and the motion they give.
-   subroutine solve_marked(compliance, q, lambda, motion, solved)
+   subroutine solve_marked(scene, compliance, q, lambda, motion, solved)
+      type(scene_type), intent(in) :: scene
       type(compliance_type), intent(in) :: compliance
       real(wp), intent(in) :: q(:)               !! (compliance%n)
       real(wp), intent(inout) :: lambda(:)       !! (n_rows)
@@ -170,7 +172,7 @@ contains
 
       call solve_complementarity(compliance%w, q, x, solved)
       lambda(compliance%rows) = x
-      motion = matmul(compliance%x, x)
+      motion = pushed(scene, compliance, x)
    end subroutine solve_marked
 
    !> The impulses of a step in which rows have closed, and the motion after it.
@@ -261,7 +263,7 @@ contains
          call solve_rows(compliance%w, motion - matmul(compliance%w, given), &
                scene%rows%friction(compliance%rows), none, x, solved)
          call split_forces(compliance, x - given, impulse, friction)
-         to%motion%v = to%motion%v + matmul(compliance%x, x - given)
+         to%motion%v = to%motion%v + pushed(scene, compliance, x - given)
       end subroutine correct_velocity
 
    end subroutine find_impulses

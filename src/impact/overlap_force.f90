@@ -6,7 +6,7 @@ module overlap_force
    use complementarity, only: solve_complementarity, solve_equality
    use constraint_rows, only: row_gaps, row_accelerations, gap_size, law_overlap
    use impact_scene, only: scene_type, contact_motion_type, gap_tolerance
-   use row_compliance, only: compliance_type, find_compliance
+   use row_compliance, only: compliance_type, find_compliance, unit_motions
    implicit none
    private
 
@@ -80,7 +80,7 @@ contains
       m = size(overlap%held)
       call find_compliance(scene, [overlap%rows, overlap%held], all)
       allocate (overlap%yield(m, n))
-      associate (w => all%w, x => all%x)
+      associate (w => all%w, x => unit_motions(scene, all))
          do j = 1, n
             call solve_equality(w(n + 1:, n + 1:), w(n + 1:, j), overlap%yield(:, j), solved)
             if (.not. solved) then

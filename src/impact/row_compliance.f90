@@ -1,15 +1,19 @@
 !> Compliance of contact rows, along their normals and where there is friction along their tangents
-!> too: on the effective matrix at hand by back-substitutions, or on the mass.
+!> too: on the effective matrix at hand by back-substitutions, or on the mass. What stays the same
+!> is kept.
 module row_compliance
-   use kinds, only: wp
+   use kinds, only: wp, int64
    use errors, only: error_type
-   use equation_of_motion, only: solve_motion, prepare_mass, solve_mass
+   use equation_of_motion, only: prepare_mass, solve_together
+   use compliance_store, only: choose_shelf, missing_columns, keep_column, add_columns, &
+         most_entries
    use constraint_rows, only: row_accelerations, slip_products, row_vector, slip_vector
    use impact_scene, only: scene_type
    implicit none
    private
 
-   public :: compliance_type, find_compliance, mass_compliance, row_motion, join_rates, split_forces
+   public :: compliance_type, find_compliance, mass_compliance, row_motion, pushed, unit_motions
+   public :: join_rates, split_forces
 
    !> Rows that take part. With friction on any of them, forces and motions have 2 n entries: those
    !> along the normals, then those along the tangents.
@@ -17,6 +21,8 @@ module row_compliance
       integer :: n = 0
       integer, allocatable :: rows(:)            !! (n)
       logical, allocatable :: rough(:)           !! (n) with friction; of no size if none is
+      integer :: shelf = 0                       !! where the columns are kept, 0: in `x`
+      integer, allocatable :: place(:)           !! (n or 2 n) on the shelf, 0: a column of zeros
       real(wp), allocatable :: x(:, :)           !! (n_freedoms, n or 2 n) motion by unit forces
       real(wp), allocatable :: w(:, :)           !! (n or 2 n, the same) of the rows
    end type compliance_type
@@ -55,48 +61,153 @@ contains
       integer, intent(in) :: rows(:)
       logical, intent(in) :: on_mass, rough(:)
       type(compliance_type), intent(out) :: compliance
-      integer :: j, n, n_freedoms
+      integer :: columns(size(rows)*merge(2, 1, any(rough)))
+      integer :: j, n
 
       n = size(rows)
-      n_freedoms = scene%system%structure%map%n_freedoms
       compliance%n = n
       compliance%rows = rows
       compliance%rough = pack(rough, spread(any(rough), 1, n))
-      associate (m => n + size(compliance%rough))
-         allocate (compliance%x(n_freedoms, m), compliance%w(m, m))
-      end associate
-      compliance%x = 0.0_wp
-      compliance%w = 0.0_wp
+      columns(:n) = rows
+      if (any(rough)) columns(n + 1:) = merge(scene%rows%n + rows, 0, &
+            rough .and. scene%rows%facing(rows))
+      if (stays(scene, size(columns))) then
+         call take_from_shelf(scene, columns, on_mass, compliance)
+      else
+         call solve_for_columns(scene, columns, on_mass, compliance)
+      end if
       do j = 1, n
-         call add_column(row_vector(scene%rows, rows(j), n_freedoms), j)
          ! a row that slides off its surface in this step asks for nothing
          if (.not. scene%rows%facing(rows(j))) compliance%w(j, j) = 1.0_wp
       end do
       do j = 1, size(compliance%rough)
-         if (compliance%rough(j) .and. scene%rows%facing(rows(j))) then
-            call add_column(slip_vector(scene%rows, rows(j), n_freedoms), n + j)
-         else
-            ! no force there: any motion will do
-            compliance%w(n + j, n + j) = compliance%w(j, j)
-         end if
+         ! no force there: any motion will do
+         if (columns(n + j) == 0) compliance%w(n + j, n + j) = compliance%w(j, j)
       end do
       compliance%w = (compliance%w + transpose(compliance%w))/2.0_wp
-
-   contains
-
-      subroutine add_column(force, k)
-         real(wp), intent(in) :: force(:)
-         integer, intent(in) :: k
-
-         if (on_mass) then
-            compliance%x(:, k) = solve_mass(scene%system, force)
-         else
-            compliance%x(:, k) = solve_motion(scene%system, force)
-         end if
-         compliance%w(:, k) = row_motion(scene, compliance, compliance%x(:, k))
-      end subroutine add_column
-
    end subroutine build
+
+   !> Whether columns are the same as long as the matrix is, and few enough to be kept.
+   pure function stays(scene, n_columns) result(same)
+      type(scene_type), intent(in) :: scene
+      integer, intent(in) :: n_columns
+      logical :: same
+
+      same = scene%system%structure%is_linear .and. .not. scene%rows%moving .and. &
+            int(scene%system%structure%map%n_freedoms, int64)*n_columns <= most_entries
+   end function stays
+
+   !> The columns of the matrix at hand, from the shelf where they are there already.
+   subroutine take_from_shelf(scene, columns, on_mass, compliance)
+      type(scene_type), intent(inout) :: scene
+      integer, intent(in) :: columns(:)
+      logical, intent(in) :: on_mass
+      type(compliance_type), intent(inout) :: compliance
+      integer, allocatable :: missing(:)
+      real(wp), allocatable :: x(:, :)
+      integer :: j
+
+      associate (matrices => scene%system%matrices)
+         call choose_shelf(scene%compliances, matrices%generation, matrices%current_factors(), &
+               scene%rows%n, compliance%shelf)
+      end associate
+      associate (shelf => scene%compliances%shelves(compliance%shelf), n => scene%rows%n)
+         missing = missing_columns(shelf, pack(columns, columns > 0))
+         call column_motions(scene, missing, on_mass, x)
+         do j = 1, size(missing)
+            call keep_column(shelf, missing(j), x(:, j), &
+                  [row_accelerations(scene%rows, x(:, j)), slip_products(scene%rows, x(:, j))])
+         end do
+         allocate (compliance%place(size(columns)))
+         allocate (compliance%w(size(columns), size(columns)))
+         compliance%place = 0
+         compliance%w = 0.0_wp
+         do j = 1, size(columns)
+            if (columns(j) == 0) cycle
+            compliance%place(j) = shelf%place(columns(j))
+            compliance%w(:, j) = join_rates(compliance, shelf%w(:n, compliance%place(j)), &
+                  shelf%w(n + 1:, compliance%place(j)))
+         end do
+      end associate
+   end subroutine take_from_shelf
+
+   !> The columns of the matrix at hand, for this once.
+   subroutine solve_for_columns(scene, columns, on_mass, compliance)
+      type(scene_type), intent(inout) :: scene
+      integer, intent(in) :: columns(:)
+      logical, intent(in) :: on_mass
+      type(compliance_type), intent(inout) :: compliance
+      integer :: j
+
+      call column_motions(scene, columns, on_mass, compliance%x)
+      allocate (compliance%w(size(columns), size(columns)))
+      compliance%w = 0.0_wp
+      do j = 1, size(columns)
+         if (columns(j) == 0) cycle
+         compliance%w(:, j) = row_motion(scene, compliance, compliance%x(:, j))
+      end do
+   end subroutine solve_for_columns
+
+   !> Motions by unit forces along the normals of rows, or behind all rows along their tangents;
+   !> a column 0 is zero.
+   subroutine column_motions(scene, columns, on_mass, x)
+      type(scene_type), intent(inout) :: scene
+      integer, intent(in) :: columns(:)
+      logical, intent(in) :: on_mass
+      real(wp), allocatable, intent(out) :: x(:, :)   !! (n_freedoms, size(columns))
+      integer :: j, n_freedoms
+
+      n_freedoms = scene%system%structure%map%n_freedoms
+      allocate (x(n_freedoms, size(columns)))
+      if (size(columns) == 0) return
+      do j = 1, size(columns)
+         if (columns(j) == 0) then
+            x(:, j) = 0.0_wp
+         else if (columns(j) > scene%rows%n) then
+            x(:, j) = slip_vector(scene%rows, columns(j) - scene%rows%n, n_freedoms)
+         else
+            x(:, j) = row_vector(scene%rows, columns(j), n_freedoms)
+         end if
+      end do
+      call solve_together(scene%system, on_mass, x)
+   end subroutine column_motions
+
+   !> Motion by forces, or impulses, in the rows that take part.
+   function pushed(scene, compliance, forces) result(motion)
+      type(scene_type), intent(in) :: scene
+      type(compliance_type), intent(in) :: compliance
+      real(wp), intent(in) :: forces(:)          !! (n or 2 n)
+      real(wp), dimension(scene%system%structure%map%n_freedoms) :: motion
+      integer :: pushing(size(forces)), n, j
+
+      if (compliance%shelf == 0) then
+         motion = matmul(compliance%x, forces)
+         return
+      end if
+      n = 0
+      do j = 1, size(forces)
+         if (compliance%place(j) == 0 .or. abs(forces(j)) <= 0.0_wp) cycle
+         n = n + 1
+         pushing(n) = j
+      end do
+      call add_columns(scene%compliances%shelves(compliance%shelf), compliance%place(pushing(:n)), &
+            forces(pushing(:n)), motion)
+   end function pushed
+
+   !> The motions by unit forces in the rows that take part.
+   function unit_motions(scene, compliance) result(x)
+      type(scene_type), intent(in) :: scene
+      type(compliance_type), intent(in) :: compliance
+      real(wp) :: x(scene%system%structure%map%n_freedoms, size(compliance%w, 1))
+      real(wp) :: unit(size(x, 2))
+      integer :: j
+
+      do j = 1, size(x, 2)
+         unit = 0.0_wp
+         unit(j) = 1.0_wp
+         x(:, j) = pushed(scene, compliance, unit)
+      end do
+   end function unit_motions
 
    !> [G; T] u of the rows that take part; nothing along the tangent of rows without friction.
    pure function row_motion(scene, compliance, u) result(motion)

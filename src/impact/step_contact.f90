@@ -9,7 +9,7 @@ module step_contact
    use constraint_rows, only: row_gaps, row_accelerations, slip_products, slip_rates, &
          slip_increments, sticks, gap_size, law_motion, law_closed, law_penalty, law_overlap
    use impact_scene, only: scene_type, contact_motion_type, gap_tolerance
-   use row_compliance, only: compliance_type, find_compliance, join_rates, split_forces
+   use row_compliance, only: compliance_type, find_compliance, pushed, join_rates, split_forces
    implicit none
    private
 
@@ -109,7 +109,7 @@ contains
          return
       end if
       call split_forces(compliance, forces, to%lambda, to%tau)
-      delta = delta + matmul(compliance%x, forces)
+      delta = delta + pushed(scene, compliance, forces)
    end subroutine find_forces
 
    !> What the law of a row adds to its compliance: the spring of a penalty; for the fictitious

@@ -5,15 +5,16 @@ module transformation
    use kinds, only: wp
    use errors, only: error_type
    use surfaces, only: beta_given
-   use constraint_rows, only: row_gaps, row_rates, rate_size, may_hit
+   use constraint_rows, only: row_gaps
    use impact_scene, only: scene_type, contact_motion_type, accept_span, gap_tolerance, &
-         merge_gap_tolerance, rate_tolerance, merge_time_tolerance
+         merge_gap_tolerance, merge_time_tolerance
    use impact_method, only: impact_method_type
    use constrained_step, only: advance_smoothly
    use contact_release, only: progress_type, smooth_span, release_rows, note_return
    use impact_time, only: span_type, hits_type, find_hits, locate_impact, add_missed_hits
    use impact_jump, only: impact_type, apply_impact
-   use contact_impulses, only: restart_acceleration, project_touching, follow_wall
+   use impact_choice, only: choose_rows
+   use span_ends, only: settle_span
    use row_following, only: rows_ahead, rows_at, rows_here, settle_rows
    use first_contacts, only: find_first_contacts
    implicit none
@@ -113,9 +114,7 @@ contains
       call settle_rows(scene, motion, dt, error)
    end subroutine advance
 
-   !> Takes a span of smooth motion. Rows that opened in it touch no more; the others are put back
-   !> on
-   !> the wall where round-off or the wall's motion has moved them off.
+   !> Takes a span of smooth motion.
    subroutine take_span(scene, motion, next, dt, span, progress, error)
       type(scene_type), intent(inout) :: scene
       type(contact_motion_type), intent(inout) :: motion
@@ -124,29 +123,13 @@ contains
       type(span_type), intent(in) :: span
       type(progress_type), intent(inout) :: progress
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: span_impulse(scene%rows%n)
-      logical, dimension(scene%rows%n) :: thrown, stuck
-      type(contact_motion_type) :: reached
+      type(contact_motion_type) :: from
 
       progress%remaining = progress%remaining - dt
-      span_impulse = dt*(motion%lambda + next%lambda)/2.0_wp
-      reached = next
-      call accept_span(scene, motion, reached)
-      stuck = reached%sticking .and. .not. motion%sticking .and. may_hit(scene%rows)
-      motion = reached
-      motion%touching = next%touching .and. span%held
-      motion%fresh = .false.
-      call follow_wall(scene, motion, span_impulse, progress%dt, thrown, error)
-      if (allocated(error)) return
-      if (any(thrown)) call release_rows(scene, motion, thrown, progress)
-      if (any(thrown .or. (stuck .and. motion%touching))) then
-         ! a row that has come to stick has no slip acceleration any more
-         call restart_acceleration(scene, motion, error)
-         if (allocated(error)) return
-         motion%fresh = .true.
-      end if
-      call project_touching(scene, motion, span%gap_limit, &
-            rate_tolerance*rate_size(scene%rows, motion%motion), error)
+      from = motion
+      motion = next
+      call accept_span(scene, from, motion)
+      call settle_span(scene, from, motion, span, progress, error)
    end subroutine take_span
 
    !> Goes to the earliest impact of the span and jumps there.
@@ -277,49 +260,6 @@ contains
       tau = sum(bracket)/2.0_wp
       call advance_smoothly(scene, motion, tau, span%beta, at, error, span%held)
    end subroutine look_again
-
-   !> Which rows take part in the impact: all that close and are at the wall now, or will be within
-   !> the merging time; rows at rest that are pressed against the wall are captured without impact.
-   subroutine choose_rows(scene, motion, span, hits, tau, progress, impact)
-      type(scene_type), intent(in) :: scene
-      type(contact_motion_type), intent(in) :: motion
-      type(span_type), intent(in) :: span
-      type(hits_type), intent(in) :: hits
-      real(wp), intent(in) :: tau
-      type(progress_type), intent(in) :: progress
-      type(impact_type), intent(out) :: impact
-      real(wp), dimension(scene%rows%n) :: gaps, rates
-      integer :: i, row
-
-      gaps = row_gaps(scene%rows, motion%motion)
-      rates = row_rates(scene%rows, motion%motion)
-      impact%dt = progress%dt
-      impact%beta = progress%beta
-      impact%plastic = progress%at_limit
-      impact%rate_limit = rate_tolerance*rate_size(scene%rows, motion%motion)
-      impact%new = may_hit(scene%rows) .and. .not. motion%touching .and. &
-            rates < -impact%rate_limit .and. &
-            (gaps <= span%gap_limit*(merge_gap_tolerance/gap_tolerance) .or. &
-            gaps <= -merge_time_tolerance*progress%dt*rates)
-      ! an impact elsewhere may push a row at the wall; without a rebound of its own it answers at
-      ! once
-      impact%near = may_hit(scene%rows) .and. .not. motion%touching .and. .not. impact%new .and. &
-            .not. scene%rows%restitution > 0.0_wp .and. &
-            gaps <= span%gap_limit*(merge_gap_tolerance/gap_tolerance)
-      allocate (impact%forced(scene%rows%n))
-      impact%forced = .false.
-      do i = 1, hits%n
-         row = hits%row(i)
-         impact%forced(row) = .not. hits%high(i) > 0.0_wp .and. .not. tau > 0.0_wp .and. &
-               rates(row) >= -impact%rate_limit
-      end do
-      if (.not. any(impact%new) .and. .not. any(impact%forced)) then
-         ! never go on with nothing: the row that is nearest then
-         impact%forced(hits%row(minloc(gaps(hits%row(:hits%n)), dim=1))) = .true.
-      end if
-      impact%new = impact%new .or. impact%forced
-      impact%near = impact%near .and. .not. impact%new
-   end subroutine choose_rows
 
    !> The first state of a dynamic step.
    subroutine start(self, scene, motion, dt, error)

@@ -1,5 +1,6 @@
 !> The linear complementarity problem 0 <= x, W x + q >= 0, x (W x + q) = 0 with W symmetric
-!> positive definite, solved by the finite active-set method of Lawson and Hanson.
+!> positive definite: by changing sets of rows at once while that leads on (it does where most rows
+!> push), else by the finite active-set method of Lawson and Hanson.
 module complementarity
    use kinds, only: wp
    use blas_interfaces, only: dposv
@@ -16,6 +17,8 @@ module complementarity
    real(wp), parameter :: dependence_limit = 1.0e-9_wp
    !> What is then added to the diagonal, in parts of its mean.
    real(wp), parameter :: dependence_tolerance = 1.0e-12_wp
+   !> Sets that are tried at once before rows go one by one.
+   integer, parameter :: max_exchanges = 8
 
 contains
 
@@ -29,6 +32,8 @@ contains
       real(wp) :: residual(size(q)), trial(size(q)), threshold
       integer :: entering, sweep
 
+      call exchange_sets(w, q, x, solved)
+      if (solved) return
       x = 0.0_wp
       solved = .true.
       active = .false.
@@ -48,6 +53,35 @@ contains
       end do
       solved = .false.
    end subroutine solve_complementarity
+
+   !> Tries all rows first, then drops all those that would pull and takes all those back that would
+   !> overlap, as long as there are ever fewer of both (block pivoting by Kostreva). `solved` is
+   !> false if that ends without the answer, or if rows depend on each other.
+   pure subroutine exchange_sets(w, q, x, solved)
+      real(wp), intent(in) :: w(:, :), q(:)
+      real(wp), intent(out) :: x(:)
+      logical, intent(out) :: solved
+      logical, dimension(size(q)) :: active, wrong
+      real(wp) :: residual(size(q)), threshold
+      integer :: all_rows(size(q)), i, fewest
+
+      all_rows = [(i, i=1, size(q))]
+      active = .true.
+      fewest = size(q) + 1
+      threshold = relative_tolerance*max(maxval(abs(q)), tiny(1.0_wp))
+      do i = 1, max_exchanges
+         call solve_rows_held(w, q, pack(all_rows, active), x, solved)
+         if (.not. solved) return
+         residual = matmul(w, x) + q
+         wrong = active .and. .not. x > relative_tolerance*maxval(x)
+         wrong = wrong .or. (.not. active .and. residual < -threshold)
+         if (.not. any(wrong)) return
+         solved = .false.
+         if (count(wrong) >= fewest) return
+         fewest = count(wrong)
+         active = active .neqv. wrong
+      end do
+   end subroutine exchange_sets
 
    !> Solves W x + q = 0, every row held whatever the sign of x. Of the many answers for rows that
    !> depend on each other, one without negative x is preferred.
@@ -94,6 +128,22 @@ contains
       end if
       if (solved) x(rows) = rhs
    end subroutine solve_active
+
+   !> x from some rows as equations, zero elsewhere; not solved if they depend on each other.
+   pure subroutine solve_rows_held(w, q, rows, x, solved)
+      real(wp), intent(in) :: w(:, :), q(:)
+      integer, intent(in) :: rows(:)
+      real(wp), intent(out) :: x(:)
+      logical, intent(out) :: solved
+      real(wp) :: rhs(size(rows))
+
+      x = 0.0_wp
+      solved = .true.
+      if (size(rows) == 0) return
+      rhs = -q(rows)
+      call solve_definite(w(rows, rows), rhs, 0.0_wp, solved)
+      if (solved) x(rows) = rhs
+   end subroutine solve_rows_held
 
    !> Cholesky's method on matrix + shift I; refuses pivots lost in round-off.
    pure subroutine solve_definite(matrix, rhs, shift, solved)

@@ -53,6 +53,7 @@ module surfaces
       real(wp) :: restitution = 0.0_wp           !! e in [0, 1]
       real(wp) :: return_parameter = 0.3_wp      !! alpha in (0, 1), fictitious force
       logical :: direct = .false.                !! fictitious force solved directly
+      logical :: anchored = .false.              !! EVENTS=ANCHOR: steps of one size from events
       integer :: beta_choice = beta_automatic
       real(wp) :: beta = 0.0_wp                  !! beta of the impact step when given
       logical :: has_capture = .false.

@@ -1,14 +1,15 @@
 !> The calls to the HDF5 library, the only ones: datasets, attributes and growing datasets by path.
 !> hdf5_file and hdf5_reader give them types and error messages.
 module hdf5_calls
-   use, intrinsic :: iso_c_binding, only: c_char, c_ptr
+   use, intrinsic :: iso_c_binding, only: c_char, c_loc, c_ptr
    use hdf5, only: h5_integer_kind, h5aclose_f, h5acreate_f, h5aexists_f, h5aopen_f, &
          h5awrite_f, h5dclose_f, h5dcreate_f, h5dget_space_f, h5dont_atexit_f, h5dopen_f, &
          h5dread_f, h5dset_extent_f, h5dwrite_f, h5eset_auto_f, h5f_acc_rdonly_f, &
          h5f_acc_trunc_f, h5f_close_strong_f, h5f_scope_global_f, h5fclose_f, h5fcreate_f, &
          h5fflush_f, h5fopen_f, h5gclose_f, h5gcreate_f, h5kind_to_type, h5oclose_f, h5oopen_f, &
          h5open_f, h5p_dataset_create_f, h5p_file_access_f, h5p_link_create_f, h5pclose_f, &
-         h5pcreate_f, h5pset_chunk_f, h5pset_create_inter_group_f, h5pset_fclose_degree_f, &
+         h5pcreate_f, h5pset_chunk_f, h5pset_create_inter_group_f, h5pset_deflate_f, &
+         h5pset_fclose_degree_f, h5pset_shuffle_f, &
          h5s_scalar_f, h5s_select_set_f, h5s_unlimited_f, h5sclose_f, h5screate_f, &
          h5screate_simple_f, h5sget_simple_extent_dims_f, h5sget_simple_extent_ndims_f, &
          h5sselect_hyperslab_f, h5t_fortran_s1, h5t_ieee_f64le, h5t_native_double, &
@@ -18,7 +19,7 @@ module hdf5_calls
    implicit none
    private
 
-   public :: hid_t, hsize_t, storage_type
+   public :: hid_t, hsize_t, storage_type, chunks_type
    public :: real_storage, integer_storage, long_storage, byte_storage, text_storage, close_storage
    public :: create_file, open_file, flush_file, close_file, make_group
    public :: put_dataset, put_attribute, make_series, append_block, get_dims, get_dataset
@@ -28,6 +29,12 @@ module hdf5_calls
       integer(hid_t) :: in_file = -1
       integer(hid_t) :: in_memory = -1
    end type storage_type
+
+   !> How a growing dataset is cut into chunks, each of which lies together in the file.
+   type :: chunks_type
+      integer :: rows = 1
+      integer :: deflate = 0   !! level of compression behind a shuffle of bytes, 0: none
+   end type chunks_type
 
 contains
 
@@ -52,12 +59,12 @@ contains
       storage%in_memory = h5kind_to_type(int64, h5_integer_kind)
    end function long_storage
 
-   !> Default integers stored as unsigned 8 bit numbers.
+   !> Unsigned 8 bit numbers, in memory as in the file.
    function byte_storage() result(storage)
       type(storage_type) :: storage
 
       storage%in_file = h5t_std_u8le
-      storage%in_memory = h5t_native_integer
+      storage%in_memory = h5t_std_u8le
    end function byte_storage
 
    !> Texts of the given length, ASCII; `close_storage` gives its types back.
@@ -139,35 +146,37 @@ contains
       failed = status < 0
    end subroutine close_file
 
-   subroutine make_group(file, path, failed)
+   subroutine make_group(file, path, description, failed)
       integer(hid_t), intent(in) :: file
-      character(len=*), intent(in) :: path
+      character(len=*), intent(in) :: path, description
       logical, intent(out) :: failed
       integer(hid_t) :: group, links
-      integer :: status(4)
+      integer :: status(5)
 
       call link_property(links, status(1))
       call h5gcreate_f(file, path, group, status(2), lcpl_id=links)
-      call h5gclose_f(group, status(3))
-      call h5pclose_f(links, status(4))
+      call describe(group, description, status(3))
+      call h5gclose_f(group, status(4))
+      call h5pclose_f(links, status(5))
       failed = any(status < 0)
    end subroutine make_group
 
    !> Makes a dataset of fixed size and writes it.
-   subroutine put_dataset(file, path, storage, dims, address, failed)
+   subroutine put_dataset(file, path, description, storage, dims, address, failed)
       integer(hid_t), intent(in) :: file
-      character(len=*), intent(in) :: path
+      character(len=*), intent(in) :: path, description
       type(storage_type), intent(in) :: storage
       integer(hsize_t), intent(in) :: dims(:)   !! no dimension: a scalar
       type(c_ptr), intent(in) :: address
       logical, intent(out) :: failed
       integer(hid_t) :: space, dataset, links
-      integer :: status(7)
+      integer :: status(8)
 
       status = 0
       call make_space(dims, space, status(1))
       call link_property(links, status(2))
       call h5dcreate_f(file, path, storage%in_file, space, dataset, status(3), lcpl_id=links)
+      call describe(dataset, description, status(8))
       if (product(dims) > 0) call h5dwrite_f(dataset, storage%in_memory, address, status(4))
       call h5dclose_f(dataset, status(5))
       call h5pclose_f(links, status(6))
@@ -183,8 +192,8 @@ contains
       integer(hsize_t), intent(in) :: dims(:)   !! no dimension: a scalar
       type(c_ptr), intent(in) :: address
       logical, intent(out) :: failed
-      integer(hid_t) :: owner, space, attribute
-      integer :: status(8)
+      integer(hid_t) :: owner, attribute
+      integer :: status(6)
       logical :: exists
 
       call h5oopen_f(file, object, owner, status(1))
@@ -194,42 +203,81 @@ contains
       call h5aexists_f(owner, name, exists, status(2))
       if (exists) then
          call h5aopen_f(owner, name, attribute, status(3))
+         call h5awrite_f(attribute, storage%in_memory, address, status(4))
+         call h5aclose_f(attribute, status(5))
       else
-         call make_space(dims, space, status(4))
-         call h5acreate_f(owner, name, storage%in_file, space, attribute, status(3))
-         call h5sclose_f(space, status(5))
+         call make_attribute(owner, name, storage, dims, address, status(3))
       end if
-      call h5awrite_f(attribute, storage%in_memory, address, status(6))
-      call h5aclose_f(attribute, status(7))
-      call h5oclose_f(owner, status(8))
+      call h5oclose_f(owner, status(6))
       failed = any(status < 0)
    end subroutine put_attribute
 
+   subroutine make_attribute(owner, name, storage, dims, address, status)
+      integer(hid_t), intent(in) :: owner
+      character(len=*), intent(in) :: name
+      type(storage_type), intent(in) :: storage
+      integer(hsize_t), intent(in) :: dims(:)
+      type(c_ptr), intent(in) :: address
+      integer, intent(out) :: status
+      integer(hid_t) :: space, attribute
+      integer :: all_status(5)
+
+      call make_space(dims, space, all_status(1))
+      call h5acreate_f(owner, name, storage%in_file, space, attribute, all_status(2))
+      call h5sclose_f(space, all_status(3))
+      call h5awrite_f(attribute, storage%in_memory, address, all_status(4))
+      call h5aclose_f(attribute, all_status(5))
+      status = minval(all_status)
+   end subroutine make_attribute
+
+   !> Gives an object its description.
+   subroutine describe(owner, description, status)
+      integer(hid_t), intent(in) :: owner
+      character(len=*), intent(in) :: description
+      integer, intent(out) :: status
+      character(kind=c_char), target :: bytes(max(1, len(description)))
+      type(storage_type) :: storage
+      integer :: i
+
+      bytes = c_char_' '
+      bytes(:len(description)) = [(description(i:i), i=1, len(description))]
+      storage = text_storage(size(bytes))
+      call make_attribute(owner, 'description', storage, [integer(hsize_t) ::], c_loc(bytes), &
+            status)
+      call close_storage(storage)
+   end subroutine describe
+
    !> Makes an empty dataset that grows along its last dimension.
-   subroutine make_series(file, path, storage, n_components, chunk_rows, failed)
+   subroutine make_series(file, path, description, storage, n_components, chunks, failed)
       integer(hid_t), intent(in) :: file
-      character(len=*), intent(in) :: path
+      character(len=*), intent(in) :: path, description
       type(storage_type), intent(in) :: storage
       integer, intent(in) :: n_components   !! 0: a list; n: rows of n values
-      integer, intent(in) :: chunk_rows
+      type(chunks_type), intent(in) :: chunks
       logical, intent(out) :: failed
       integer(hsize_t), dimension(2) :: dims, most, chunk
       integer(hid_t) :: space, dataset, properties, links
-      integer :: status(9), rank
+      integer :: status(12), rank
 
+      status = 0
       rank = merge(2, 1, n_components > 0)
       dims = int(n_components, hsize_t)
       most = dims
       chunk = dims
       dims(rank) = 0
       most(rank) = h5s_unlimited_f
-      chunk(rank) = int(chunk_rows, hsize_t)
+      chunk(rank) = int(chunks%rows, hsize_t)
       call h5screate_simple_f(rank, dims, space, status(1), maxdims=most)
       call h5pcreate_f(h5p_dataset_create_f, properties, status(2))
       call h5pset_chunk_f(properties, rank, chunk, status(3))
+      if (chunks%deflate > 0) then
+         call h5pset_shuffle_f(properties, status(10))
+         call h5pset_deflate_f(properties, chunks%deflate, status(11))
+      end if
       call link_property(links, status(4))
       call h5dcreate_f(file, path, storage%in_file, space, dataset, status(5), &
             dcpl_id=properties, lcpl_id=links)
+      call describe(dataset, description, status(12))
       call h5dclose_f(dataset, status(6))
       call h5pclose_f(links, status(7))
       call h5pclose_f(properties, status(8))
@@ -249,8 +297,12 @@ contains
       integer(hsize_t), allocatable :: dims(:), start(:), count(:)
       integer :: status(9), rank
 
-      call get_dims(file, path, dims, failed)
-      if (failed .or. n_values == 0) return
+      failed = .false.
+      if (n_values == 0) return
+      call h5dopen_f(file, path, dataset, status(1))
+      failed = status(1) < 0
+      if (failed) return
+      call shape_of(dataset, dims, failed)
       rank = size(dims)
       allocate (start(rank), count(rank))
       start = 0
@@ -258,7 +310,6 @@ contains
       count = dims
       count(rank) = n_values/product(dims(:rank - 1))
       dims(rank) = start(rank) + count(rank)
-      call h5dopen_f(file, path, dataset, status(1))
       call h5dset_extent_f(dataset, dims, status(2))
       call h5dget_space_f(dataset, space, status(3))
       call h5sselect_hyperslab_f(space, h5s_select_set_f, start, count, status(4))
@@ -268,7 +319,7 @@ contains
       call h5sclose_f(block, status(7))
       call h5sclose_f(space, status(8))
       call h5dclose_f(dataset, status(9))
-      failed = any(status < 0)
+      failed = failed .or. any(status < 0)
    end subroutine append_block
 
    !> The shape of a dataset as Fortran sees it: rows last; none for a scalar.
@@ -277,22 +328,33 @@ contains
       character(len=*), intent(in) :: path
       integer(hsize_t), allocatable, intent(out) :: dims(:)
       logical, intent(out) :: failed
+      integer(hid_t) :: dataset
+      integer :: status
+
+      call h5dopen_f(file, path, dataset, status)
+      failed = status < 0
+      if (failed) return
+      call shape_of(dataset, dims, failed)
+      call h5dclose_f(dataset, status)
+      failed = failed .or. status < 0
+   end subroutine get_dims
+
+   subroutine shape_of(dataset, dims, failed)
+      integer(hid_t), intent(in) :: dataset
+      integer(hsize_t), allocatable, intent(out) :: dims(:)
+      logical, intent(out) :: failed
       integer(hsize_t), allocatable :: most(:)
-      integer(hid_t) :: dataset, space
-      integer :: status(6), rank
+      integer(hid_t) :: space
+      integer :: status(4), rank
 
       status = 0
-      call h5dopen_f(file, path, dataset, status(1))
-      failed = status(1) < 0
-      if (failed) return
-      call h5dget_space_f(dataset, space, status(2))
-      call h5sget_simple_extent_ndims_f(space, rank, status(3))
+      call h5dget_space_f(dataset, space, status(1))
+      call h5sget_simple_extent_ndims_f(space, rank, status(2))
       allocate (dims(max(0, rank)), most(max(0, rank)))
-      if (rank > 0) call h5sget_simple_extent_dims_f(space, dims, most, status(4))
-      call h5sclose_f(space, status(5))
-      call h5dclose_f(dataset, status(6))
+      if (rank > 0) call h5sget_simple_extent_dims_f(space, dims, most, status(3))
+      call h5sclose_f(space, status(4))
       failed = any(status < 0)
-   end subroutine get_dims
+   end subroutine shape_of
 
    !> Reads a whole dataset; the memory must hold it.
    subroutine get_dataset(file, path, storage, address, failed)

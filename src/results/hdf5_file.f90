@@ -1,15 +1,18 @@
 !> An HDF5 file open for writing: datasets, attributes and growing datasets ("series") by path.
 !>
-!> Missing groups on the way to a new dataset are made. Integers are stored with 64 bits, reals in
+!> Missing groups on the way to a new dataset are made. Integers are stored with 64 bits (and handed
+!> over so: the library's own conversion clears a megabyte for each dataset), reals in
 !> double precision. An array of shape (3, n) appears as n x 3 in the file. Every failure (no
 !> permission, disk full, ...) comes back as an error of status_file that names the file.
 module hdf5_file
    use, intrinsic :: iso_c_binding, only: c_char, c_loc, c_ptr
    use errors, only: error_type, new_error, status_file
-   use hdf5_calls, only: append_block, byte_storage, close_file, close_storage, create_file, &
-         flush_file, hid_t, hsize_t, integer_storage, long_storage, make_group, make_series, &
-         put_attribute, put_dataset, real_storage, storage_type, text_storage
+   use hdf5_calls, only: append_block, byte_storage, chunks_type, close_file, close_storage, &
+         create_file, flush_file, hid_t, hsize_t, integer_storage, long_storage, make_group, &
+         make_series, put_attribute, put_dataset, real_storage, storage_type, text_storage
+   use, intrinsic :: iso_fortran_env, only: int8
    use kinds, only: int64, wp
+   use write_obstacles, only: write_obstacle
    implicit none
    private
 
@@ -24,8 +27,10 @@ module hdf5_file
       private
       integer(hid_t) :: id = -1
       character(len=:), allocatable :: path
+      integer :: deflate = 0   ! compression of the series
    contains
       procedure :: create
+      procedure :: compress
       procedure :: is_open
       procedure :: flush => flush_to_disk
       procedure :: close => close_for_good
@@ -58,8 +63,16 @@ contains
       call create_file(path, self%id, failed)
       if (.not. failed) return
       self%id = -1
-      call new_error(error, status_file, "cannot create '"//path//"': "//reason(path))
+      call new_error(error, status_file, "cannot create '"//path//"': "//write_obstacle(path))
    end subroutine create
+
+   !> Compresses all series made from here on.
+   pure subroutine compress(self, level)
+      class(hdf5_file_type), intent(inout) :: self
+      integer, intent(in) :: level   !! 0, not at all, to 9
+
+      self%deflate = level
+   end subroutine compress
 
    !> Whether the file was created and not yet closed.
    pure logical function is_open(self)
@@ -97,8 +110,8 @@ contains
       type(error_type), allocatable, intent(out) :: error   !! status_file
       logical :: failed
 
-      call make_group(self%id, path, failed)
-      call describe(self, path, description, failed, error)
+      call make_group(self%id, path, description, failed)
+      if (failed) call write_error(self, path, error)
    end subroutine create_group
 
    subroutine write_reals(self, path, values, description, error)
@@ -108,8 +121,9 @@ contains
       type(error_type), allocatable, intent(out) :: error
       logical :: failed
 
-      call put_dataset(self%id, path, real_storage(), shape(values, hsize_t), c_loc(values), failed)
-      call describe(self, path, description, failed, error)
+      call put_dataset(self%id, path, description, real_storage(), shape(values, hsize_t), &
+            c_loc(values), failed)
+      if (failed) call write_error(self, path, error)
    end subroutine write_reals
 
    subroutine write_real_table(self, path, values, description, error)
@@ -119,44 +133,52 @@ contains
       type(error_type), allocatable, intent(out) :: error
       logical :: failed
 
-      call put_dataset(self%id, path, real_storage(), shape(values, hsize_t), c_loc(values), failed)
-      call describe(self, path, description, failed, error)
+      call put_dataset(self%id, path, description, real_storage(), shape(values, hsize_t), &
+            c_loc(values), failed)
+      if (failed) call write_error(self, path, error)
    end subroutine write_real_table
 
    subroutine write_integers(self, path, values, description, error)
       class(hdf5_file_type), intent(in) :: self
       character(len=*), intent(in) :: path, description
-      integer, intent(in), contiguous, target :: values(:)
+      integer, intent(in) :: values(:)
       type(error_type), allocatable, intent(out) :: error
+      integer(int64), allocatable, target :: longs(:)
       logical :: failed
 
-      call put_dataset(self%id, path, integer_storage(), shape(values, hsize_t), c_loc(values), &
-            failed)
-      call describe(self, path, description, failed, error)
+      longs = int(values, int64)
+      call put_dataset(self%id, path, description, long_storage(), shape(longs, hsize_t), &
+            c_loc(longs), failed)
+      if (failed) call write_error(self, path, error)
    end subroutine write_integers
 
    subroutine write_integer_table(self, path, values, description, error)
       class(hdf5_file_type), intent(in) :: self
       character(len=*), intent(in) :: path, description
-      integer, intent(in), contiguous, target :: values(:, :)
+      integer, intent(in) :: values(:, :)
       type(error_type), allocatable, intent(out) :: error
+      integer(int64), allocatable, target :: longs(:, :)
       logical :: failed
 
-      call put_dataset(self%id, path, integer_storage(), shape(values, hsize_t), c_loc(values), &
-            failed)
-      call describe(self, path, description, failed, error)
+      longs = int(values, int64)
+      call put_dataset(self%id, path, description, long_storage(), shape(longs, hsize_t), &
+            c_loc(longs), failed)
+      if (failed) call write_error(self, path, error)
    end subroutine write_integer_table
 
    !> Integers 0 to 255, stored as unsigned 8 bit numbers.
    subroutine write_bytes(self, path, values, description, error)
       class(hdf5_file_type), intent(in) :: self
       character(len=*), intent(in) :: path, description
-      integer, intent(in), contiguous, target :: values(:)
+      integer, intent(in) :: values(:)
       type(error_type), allocatable, intent(out) :: error   !! status_file
+      integer(int8), allocatable, target :: bytes(:)
       logical :: failed
 
-      call put_dataset(self%id, path, byte_storage(), shape(values, hsize_t), c_loc(values), failed)
-      call describe(self, path, description, failed, error)
+      bytes = int(modulo(values + 128, 256) - 128, int8)
+      call put_dataset(self%id, path, description, byte_storage(), shape(bytes, hsize_t), &
+            c_loc(bytes), failed)
+      if (failed) call write_error(self, path, error)
    end subroutine write_bytes
 
    !> One text as a scalar of exactly its length.
@@ -170,9 +192,10 @@ contains
 
       call to_bytes([value], bytes)
       storage = text_storage(size(bytes))
-      call put_dataset(self%id, path, storage, [integer(hsize_t) ::], c_loc(bytes), failed)
+      call put_dataset(self%id, path, description, storage, [integer(hsize_t) ::], c_loc(bytes), &
+            failed)
       call close_storage(storage)
-      call describe(self, path, description, failed, error)
+      if (failed) call write_error(self, path, error)
    end subroutine write_text
 
    subroutine write_texts(self, path, values, description, error)
@@ -185,9 +208,10 @@ contains
 
       call to_bytes(values, bytes)
       storage = text_storage(max(1, len(values)))
-      call put_dataset(self%id, path, storage, shape(values, hsize_t), c_loc(bytes), failed)
+      call put_dataset(self%id, path, description, storage, shape(values, hsize_t), c_loc(bytes), &
+            failed)
       call close_storage(storage)
-      call describe(self, path, description, failed, error)
+      if (failed) call write_error(self, path, error)
    end subroutine write_texts
 
    subroutine set_integer(self, object, name, value, error)
@@ -260,8 +284,9 @@ contains
 
       storage = real_storage()
       if (kind == series_integer) storage = integer_storage()
-      call make_series(self%id, path, storage, n_components, chunk_rows, failed)
-      call describe(self, path, description, failed, error)
+      call make_series(self%id, path, description, storage, n_components, &
+            chunks_type(chunk_rows, self%deflate), failed)
+      if (failed) call write_error(self, path, error)
    end subroutine create_series
 
    !> Makes an empty list of texts that grows by `append`; longer texts are cut.
@@ -274,9 +299,10 @@ contains
       logical :: failed
 
       storage = text_storage(length)
-      call make_series(self%id, path, storage, 0, chunk_rows, failed)
+      call make_series(self%id, path, description, storage, 0, &
+            chunks_type(chunk_rows, self%deflate), failed)
       call close_storage(storage)
-      call describe(self, path, description, failed, error)
+      if (failed) call write_error(self, path, error)
    end subroutine create_text_series
 
    subroutine append_reals(self, path, values, error)
@@ -300,10 +326,10 @@ contains
    subroutine append_integers(self, path, values, error)
       class(hdf5_file_type), intent(in) :: self
       character(len=*), intent(in) :: path
-      integer, intent(in), contiguous, target :: values(:)
+      integer, intent(in) :: values(:)
       type(error_type), allocatable, intent(out) :: error
 
-      call append_values(self, path, integer_storage(), size(values), c_loc(values), error)
+      call self%append_longs(path, int(values, int64), error)
    end subroutine append_integers
 
    subroutine append_longs(self, path, values, error)
@@ -341,20 +367,6 @@ contains
       if (failed) call write_error(self, path, error)
    end subroutine append_values
 
-   !> Gives a new object its description, unless making it failed.
-   subroutine describe(self, path, description, failed, error)
-      class(hdf5_file_type), intent(in) :: self
-      character(len=*), intent(in) :: path, description
-      logical, intent(in) :: failed
-      type(error_type), allocatable, intent(out) :: error
-
-      if (failed) then
-         call write_error(self, path, error)
-      else
-         call self%set_attribute(path, 'description', description, error)
-      end if
-   end subroutine describe
-
    !> The characters of the texts, one after the other; a blank for a text of no length.
    pure subroutine to_bytes(texts, bytes)
       character(len=*), intent(in) :: texts(:)
@@ -376,23 +388,5 @@ contains
       call new_error(error, status_file, 'cannot write '//object//" to '"//path// &
             "': disk full, no access any more, or the file is not open")
    end subroutine write_error
-
-   !> Why a file cannot be written, as the Fortran library sees it.
-   function reason(path) result(message)
-      character(len=*), intent(in) :: path
-      character(len=:), allocatable :: message
-      character(len=256) :: io_message
-      integer :: unit, status, first
-
-      open (newunit=unit, file=path, action='readwrite', status='unknown', iostat=status, &
-            iomsg=io_message)
-      if (status == 0) then
-         close (unit)
-         message = 'another program has it open, or the disk is full'
-      else
-         first = index(io_message, ': ', back=.true.)
-         message = trim(io_message(merge(first + 2, 1, first > 0):))
-      end if
-   end function reason
 
 end module hdf5_file

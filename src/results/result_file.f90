@@ -94,6 +94,12 @@ contains
       if (allocated(error)) return
       call self%events%add_integer_column(self%file, 'node', 'id of the slave node', error)
       if (allocated(error)) return
+      call self%events%add_integer_column(self%file, 'solves', &
+            'back-substitutions of the run up to then', error)
+      if (allocated(error)) return
+      call self%events%add_integer_column(self%file, 'factorizations', &
+            'factorizations of the run up to then', error)
+      if (allocated(error)) return
       call self%events%add_text_column(self%file, 'kind', text_length, &
             'impact, capture, release, contact (first overlap) or limit (of events)', error)
       if (allocated(error)) return
@@ -235,8 +241,9 @@ contains
             name = list%names(list%rows(event%row)%pair)
             texts(2) = name(:text_length)
             call self%events%append_row(self%file, [event%time, event%rate_before, &
-                  event%rate_after, event%impulse, event%beta], [scene%rows%node_id(event%row)], &
-                  texts, error)
+                  event%rate_after, event%impulse, event%beta], &
+                  [scene%rows%node_id(event%row), int(event%n_solves), &
+                  int(event%n_factorizations)], texts, error)
          end associate
          if (allocated(error)) return
       end do

@@ -156,10 +156,14 @@ contains
          case (method_lagrange)
             line = 'Lagrange multipliers, velocities corrected at the ends of steps'
          case default
-            line = 'transformation, beta of the impact step ' &
-                  //to_text(impact_beta(simulation%scene, &
-                  simulation%model%steps(1)%dt))//' ('//trim(merge('given    ', &
-                  'automatic', settings%beta_choice == beta_given))//')'
+            if (settings%anchored) then
+               line = 'transformation, steps of one size that begin at events'
+            else
+               line = 'transformation, beta of the impact step ' &
+                     //to_text(impact_beta(simulation%scene, &
+                     simulation%model%steps(1)%dt))//' ('//trim(merge('given    ', &
+                     'automatic', settings%beta_choice == beta_given))//')'
+            end if
          end select
       end associate
       call say(log, '  impact: '//line)

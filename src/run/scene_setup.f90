@@ -24,7 +24,7 @@ module scene_setup
    use impact_method, only: impact_method_type
    use increment_count, only: count_increments
    use automatic_groups, only: partition_type, resolve_automatic
-   use impact_factory, only: make_impact_method, check_method
+   use impact_factory, only: make_impact_method, check_method, check_anchor
    implicit none
    private
 
@@ -244,6 +244,8 @@ contains
          call check_critical(self, step, error)
          if (allocated(error)) return
          call check_method(self%model, self%scene%settings, step, system%newmark%beta, error)
+         if (allocated(error)) return
+         call check_anchor(self%model, self%scene, step, error)
       end associate
    end subroutine begin_step
 

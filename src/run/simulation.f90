@@ -28,6 +28,8 @@ module simulation
 
    !> Results are brought to the disk at least this often, seconds.
    real(wp), parameter :: flush_interval = 5.0_wp
+   !> Before the first increment of a run whose start-up took longer they are there too, seconds.
+   real(wp), parameter :: quick_start = 0.5_wp
 
    !> What a run writes to.
    type :: output_type
@@ -85,6 +87,7 @@ contains
       real(wp) :: started
 
       started = seconds_now()
+      output%last_flush = started
       call read_deck(simulation%model, command%deck, command%definitions, error)
       if (allocated(error)) return
       call prepare(simulation, output%log, .false., error)
@@ -193,7 +196,7 @@ contains
       call record_increment(output%results, simulation%scene, simulation%contact, &
             simulation%motion, simulation%model%steps(1)%requests, 0, .false., error)
       if (allocated(error)) return
-      call flush_results(output%results, error)
+      if (seconds_now() - output%last_flush > quick_start) call flush_now(output, error)
    end subroutine record_start
 
    !> Increments of one size, the last one shorter where they do not fill the step.
@@ -370,12 +373,16 @@ contains
    subroutine flush_now_and_then(output, error)
       type(output_type), intent(inout) :: output
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: now
 
-      now = seconds_now()
-      if (now - output%last_flush < flush_interval) return
-      call flush_results(output%results, error)
-      output%last_flush = now
+      if (seconds_now() - output%last_flush >= flush_interval) call flush_now(output, error)
    end subroutine flush_now_and_then
+
+   subroutine flush_now(output, error)
+      type(output_type), intent(inout) :: output
+      type(error_type), allocatable, intent(out) :: error
+
+      call flush_results(output%results, error)
+      output%last_flush = seconds_now()
+   end subroutine flush_now
 
 end module simulation

@@ -5,6 +5,7 @@ module step_start
    use external_load, only: load_at
    use energy_ledger, only: open_ledger, close_increment
    use contact_impulses, only: restart_acceleration
+   use anchored_impacts, only: lift_anchor
    use scene_setup, only: simulation_type, begin_step
    implicit none
    private
@@ -24,6 +25,8 @@ contains
       before = simulation%scene%ledger%total
       if (i_step > 1) load_before = load_now(simulation)
       call begin_step(simulation, i_step, error)
+      if (allocated(error)) return
+      call lift_anchor(simulation%scene, simulation%motion, error)
       if (allocated(error)) return
       associate (scene => simulation%scene)
          if (i_step == 1) then

@@ -14,7 +14,8 @@ PROGRAM = str(Path(sys.argv[1]).resolve())
 HERE = Path(__file__).parent
 ENERGIES = ['time', 'kinetic', 'strain', 'damping', 'plastic', 'friction', 'impact_loss',
             'external_work', 'total', 'balance_error']
-EVENTS = ['time', 'pair', 'node', 'gap_rate_before', 'gap_rate_after', 'impulse', 'beta', 'kind']
+EVENTS = ['time', 'pair', 'node', 'gap_rate_before', 'gap_rate_after', 'impulse', 'beta', 'kind',
+          'solves', 'factorizations']
 
 # a mass on a spring and a short bar, side by side in front of a wall
 DECK = """*HEADING

@@ -1,0 +1,249 @@
+"""The cases of bench.py: each returns its figures by name; a text stands for a figure that there is
+not, and says why."""
+
+import statistics
+import sys
+from pathlib import Path
+
+import numpy as np
+from bench_decks import FIELDS, explicit_block, implicit_block, parse_block
+from bench_runs import Finished, last_line, step_seconds
+from carom_results import Results, ScriptError
+from exact_solutions import oscillator
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "input" / "block"))
+
+
+def write(folder, name, text):
+    """A deck in the folder of the benchmark."""
+    path = folder / name
+    path.write_text(text)
+    return path
+
+
+def machine(bench):
+    """Rates of the machine alone."""
+    found = bench.programs.kernels("machine", bench.threads)
+    return {f"machine_{name}": value for name, value in found.items() if name.endswith("t")}
+
+
+def matrix(bench, n, threads, seconds):
+    """K* of n by n CPE8: raw figures of the driver; the same size with fewer threads is kept."""
+    if (n, threads) not in bench.matrices:
+        deck = write(bench.work, f"q8_{n}.inp", implicit_block(n))
+        bench.matrices[n, threads] = bench.programs.kernels("matrix", deck, threads, max(1, round(seconds)))
+        deck.unlink()
+    return bench.matrices[n, threads]
+
+
+def factor(bench, n):
+    """Factor and solve of n by n CPE8 against dgemm and the memory."""
+    found = matrix(bench, n, bench.threads, bench.seconds)
+    bytes_read = 2 * 8 * found["profile_entries"]
+    # operations as usually counted: the sum of the squared column heights
+    rate = found["profile_cost"] / found["factor_seconds_1t"]
+    keys = {
+        f"factor_{n}_ratio_dgemm_1t": rate / found["dgemm_flops_1t"],
+        f"factor_{n}_seconds_1t": found["factor_seconds_1t"],
+        f"factor_{n}_gflops_1t": rate / 1e9,
+        f"factor_{n}_least_operations": found["factor_operations"] / found["profile_cost"],
+        f"solve_{n}_ratio_bandwidth_1t":
+            bytes_read / found["solve_seconds_1t"] / found["read_bytes_1t"],
+        f"solve_{n}_ms_1t": 1e3 * found["solve_seconds_1t"],
+        f"assemble_{n}_seconds_1t": found["assemble_seconds_1t"],
+        f"memory_{n}_ratio": found["stored_bytes"] / (8 * found["profile_entries"]),
+        f"solution_{n}_error": found["solution_error_1t"],
+    }
+    more = f"_{bench.threads}t"
+    if bench.threads > 1:
+        for name in ("factor", "solve", "assemble"):
+            keys[f"{name}_{n}{more}_speedup"] = (
+                found[f"{name}_seconds_1t"] / found[f"{name}_seconds{more}"]
+            )
+        keys[f"dgemm_{n}{more}_speedup"] = found[f"dgemm_flops{more}"] / found["dgemm_flops_1t"]
+        keys[f"read_{n}{more}_speedup"] = found[f"read_bytes{more}"] / found["read_bytes_1t"]
+    for name in ("mumps_factor", "mumps_solve"):
+        if f"{name}_seconds_1t" in found:
+            keys[f"{name}_{n}_seconds_1t"] = found[f"{name}_seconds_1t"]
+    if "mumps_ratio_direct" in found:
+        keys[f"mumps_{n}_ratio_direct"] = found["mumps_ratio_direct"]
+    return keys
+
+
+def growth(bench, sizes, memory_limit):
+    """The same for many sizes, as rows of numbers; the skyline ends where its memory would not
+    fit."""
+    rows = []
+    for n in sizes:
+        # 6 n^2 equations with columns of 3 n to 5 n entries
+        need = 8.0 * 6 * n**2 * 5.2 * n
+        if need > memory_limit:
+            bench.say(f"{n} by {n} elements: the skyline needs about {need / 1e9:.0f} GB of the "
+                      f"{memory_limit / 1e9:.0f} GB that may be used: left out")
+            rows.append({"n": n, "equations": 6 * n**2 + 2 * n, "skipped": "memory"})
+            continue
+        if bench.late(bench.expected_factor(n)):
+            rows.append({"n": n, "equations": 6 * n**2 + 2 * n, "skipped": "time"})
+            continue
+        found = bench.matrices.get((n, bench.threads)) or matrix(bench, n, 1, 0)
+        rows.append({"n": n, **found})
+        bench.say(f"{n} by {n}: {found['equations']:.0f} equations, factor "
+                  f"{found['factor_seconds_1t']:.3g} s, solve {found['solve_seconds_1t']:.3g} s, "
+                  f"{1e-6 * found['stored_bytes']:.4g} MB")
+    return rows
+
+
+def explicit(bench, n, plastic=False):
+    """Element updates a second of n by n CPE4 by central differences."""
+    name = "explicit_j2" if plastic else "explicit_q4"
+    deck = write(bench.work, f"{name}.inp", explicit_block(n, plastic))
+    threads = [1] if bench.threads == 1 else [1, bench.threads]
+    times, _ = step_seconds(bench.programs, deck, threads, bench.seconds)
+    keys = {f"{name}_updates_1t": n * n / times[1], f"{name}_elements": n * n}
+    if bench.threads > 1:
+        speedup = "explicit_j2" if plastic else "explicit"
+        keys[f"{speedup}_{bench.threads}t_speedup"] = times[1] / times[bench.threads]
+    return keys
+
+
+def output_share(bench, n):
+    """Part of the time that a frame every ten steps takes, explicit n by n CPE4."""
+    bare = write(bench.work, "frames_none.inp", explicit_block(n))
+    full = write(bench.work, "frames.inp", explicit_block(n, requests=FIELDS))
+    without, _ = step_seconds(bench.programs, bare, [1], 0.5 * bench.seconds)
+    with_frames, _ = step_seconds(bench.programs, full, [1], 0.5 * bench.seconds)
+    return {"output_share": 1.0 - without[1] / with_frames[1]}
+
+
+def block(bench, n=40):
+    """A step of n by n CPE8 that meet a wall: the whole deck of input/block, contact included, less
+    its first steps; of a run that would take too long as many steps as there is time for."""
+    from make_block import FLIGHT, texts
+
+    folder = bench.work / "block"
+    folder.mkdir(exist_ok=True)
+    for name, text in texts(n).items():
+        (folder / name).write_text(text)
+    deck = folder / "block.inp"
+    lines = dict(line.split(" = ") for line in deck.read_text().splitlines() if " = " in line)
+    dt, end = float(lines["dt"]), float(lines["end"])
+    steps = whole = round(end / dt)
+    limit = 20.0 if bench.quick else 200.0
+    start = bench.programs.run(deck, end=repr(2 * dt))["seconds"]
+    few = round(FLIGHT) + 5
+    trial = bench.programs.run(deck, limit=5 * limit, end=repr(few * dt))["seconds"]
+    each = max(1e-6, (trial - start) / (few - 2))
+    steps = max(few, min(whole, round(limit / each)))
+    keys, best = {}, {}
+    for _ in range(bench.rounds if each * whole < limit / 10 else 1):
+        for threads in sorted({1, bench.threads}):
+            long = bench.programs.run(deck, threads, end=repr(steps * dt))
+            short = bench.programs.run(deck, threads, end=repr(2 * dt))
+            before = best.get(threads, (1e9, 1e9))
+            best[threads] = (min(long["seconds"], before[0]), min(short["seconds"], before[1]))
+    for threads, (all_steps, first) in best.items():
+        ending = "" if threads == 1 else f"_{threads}t"
+        keys[f"block_step_ms{ending}"] = 1e3 * (all_steps - first) / (steps - 2)
+    keys["block_steps"], keys["block_steps_of_deck"] = steps, whole
+    keys["block_solves_per_step"] = long["solves"] / steps
+    keys["block_factorizations"] = long["factorizations"]
+    keys["block_start_ms"] = 1e3 * best[1][1]
+    with Results(str(long["output"])) as results:
+        keys["block_balance_error"] = relative_balance(results)
+    return keys
+
+
+def relative_balance(results):
+    """Largest error of the energy balance, relative to the largest kinetic energy."""
+    table = results.table("energy", ["balance_error", "kinetic"])
+    return float(np.abs(table["balance_error"]).max() / table["kinetic"].max())
+
+
+def sdof_text(**changes):
+    """input/sdof/sdof.inp with other words."""
+    text = (ROOT / "input/sdof/sdof.inp").read_text()
+    for old, new in changes.values():
+        if old not in text:
+            raise ScriptError(f"input/sdof/sdof.inp has no '{old}' any more")
+        text = text.replace(old, new)
+    return text
+
+
+ANCHOR = ("METHOD=TRANSFORMATION", "METHOD=TRANSFORMATION, EVENTS=ANCHOR")
+LINEAR = ("*DYNAMIC, DIRECT", "*DYNAMIC, DIRECT, BETA=0.16666666666666667")
+FAR = ("-0.5, 0, 0", "-50, 0, 0")
+
+
+def sdof_error(results):
+    """Largest difference to the exact displacement."""
+    table = results.table("history", ["time", "node_1/U1"])
+    exact = oscillator(table["time"][-1]).at(table["time"])[0]
+    return float(np.abs(table["node_1/U1"] - exact).max())
+
+
+def sdof(bench, dt=0.08):
+    """The whole process of the oscillator to t = 20 in 250 steps, the acceleration linear in each:
+    the median of 20."""
+    deck = write(bench.work, "sdof.inp", sdof_text(linear=LINEAR))
+    done = [bench.programs.run(deck, log=False, dt=dt)["seconds"] for _ in range(20)]
+    with Results(str(deck.with_suffix(".h5"))) as results:
+        error = sdof_error(results)
+    return {"sdof_process_ms": 1e3 * statistics.median(done),
+            "sdof_process_best_ms": 1e3 * min(done), "sdof_error": error}
+
+
+def event_solves(bench):
+    """Solves that an impact adds with EVENTS=ANCHOR: the oscillator with its wall and without."""
+    deck = write(bench.work, "sdof_anchor.inp", sdof_text(events=ANCHOR))
+    free = write(bench.work, "sdof_free.inp", sdof_text(events=ANCHOR, wall=FAR))
+    try:
+        hit, alone = bench.programs.run(deck), bench.programs.run(free)
+    except ScriptError as error:
+        return {"event_solves": f"EVENTS=ANCHOR: {error}"}
+    with Results(str(hit["output"])) as results:
+        error = sdof_error(results)
+    return {"event_solves": (hit["solves"] - alone["solves"]) / hit["impacts"],
+            "event_factorizations": hit["factorizations"] - alone["factorizations"],
+            "sdof_anchor_error": error}
+
+
+def parse(bench, n):
+    """Reading a deck of (n + 1)^2 nodes, and the way to its first step."""
+    deck = write(bench.work, "large.inp", parse_block(n))
+    size = deck.stat().st_size
+    seconds = min(
+        bench.programs.kernels("read", deck)["read_seconds"] for _ in range(bench.rounds)
+    )
+    keys = {"parse_mb_s": 1e-6 * size / seconds, "parse_nodes": (n + 1) ** 2}
+    keys["parse_seconds"] = seconds
+    if not bench.late(5 * seconds):
+        run = bench.programs.run(deck, end=step_of(deck))
+        keys["startup_1e6_s"] = run["seconds"] * 1e6 / keys["parse_nodes"]
+        keys["startup_bytes_per_node"] = run["memory"] / keys["parse_nodes"]
+    deck.unlink()
+    return keys
+
+
+def step_of(deck):
+    """The step size of a large deck, from its first lines."""
+    with open(deck) as file:
+        return next(line.split("=")[1].strip() for line in file if line.startswith("dt ="))
+
+
+def peer(bench, script, *words, limit=60.0, python=None):
+    """What a peer's script prints as `figure name value`, or why it did not."""
+    path = ROOT / "tests/benchmark/peers" / f"{script}.py"
+    done = Finished([python or sys.executable, "-B", path, *words], limit)
+    if done.late:
+        return f"stopped after {limit:.0f} s"
+    if done.status == 3:
+        return "not installed"
+    if done.status != 0:
+        return f"failed: {done.errors.strip().splitlines()[-1:] or done.status}"
+    found = {}
+    for line in done.output.splitlines():
+        words = line.split(maxsplit=2)
+        if len(words) == 3 and words[0] == "figure":
+            found[words[1]] = words[2] if words[1] == "version" else float(words[2])
+    return found or f"failed: {last_line(done.output)}"

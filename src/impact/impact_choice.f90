@@ -1,0 +1,60 @@
+!> Which rows take part in an impact.
+module impact_choice
+   use kinds, only: wp
+   use constraint_rows, only: row_gaps, row_rates, rate_size, may_hit
+   use impact_scene, only: scene_type, contact_motion_type, gap_tolerance, merge_gap_tolerance, &
+         rate_tolerance, merge_time_tolerance
+   use contact_release, only: progress_type
+   use impact_time, only: span_type, hits_type
+   use impact_jump, only: impact_type
+   implicit none
+   private
+
+   public :: choose_rows
+
+contains
+
+   !> Which rows take part in the impact: all that close and are at the wall now, or will be within
+   !> the merging time; rows at rest that are pressed against the wall are captured without impact.
+   subroutine choose_rows(scene, motion, span, hits, tau, progress, impact)
+      type(scene_type), intent(in) :: scene
+      type(contact_motion_type), intent(in) :: motion
+      type(span_type), intent(in) :: span
+      type(hits_type), intent(in) :: hits
+      real(wp), intent(in) :: tau
+      type(progress_type), intent(in) :: progress
+      type(impact_type), intent(out) :: impact
+      real(wp), dimension(scene%rows%n) :: gaps, rates
+      integer :: i, row
+
+      gaps = row_gaps(scene%rows, motion%motion)
+      rates = row_rates(scene%rows, motion%motion)
+      impact%dt = progress%dt
+      impact%beta = progress%beta
+      impact%plastic = progress%at_limit
+      impact%rate_limit = rate_tolerance*rate_size(scene%rows, motion%motion)
+      impact%new = may_hit(scene%rows) .and. .not. motion%touching .and. &
+            rates < -impact%rate_limit .and. &
+            (gaps <= span%gap_limit*(merge_gap_tolerance/gap_tolerance) .or. &
+            gaps <= -merge_time_tolerance*progress%dt*rates)
+      ! an impact elsewhere may push a row at the wall; without a rebound of its own it answers at
+      ! once
+      impact%near = may_hit(scene%rows) .and. .not. motion%touching .and. .not. impact%new .and. &
+            .not. scene%rows%restitution > 0.0_wp .and. &
+            gaps <= span%gap_limit*(merge_gap_tolerance/gap_tolerance)
+      allocate (impact%forced(scene%rows%n))
+      impact%forced = .false.
+      do i = 1, hits%n
+         row = hits%row(i)
+         impact%forced(row) = .not. hits%high(i) > 0.0_wp .and. .not. tau > 0.0_wp .and. &
+               rates(row) >= -impact%rate_limit
+      end do
+      if (.not. any(impact%new) .and. .not. any(impact%forced)) then
+         ! never go on with nothing: the row that is nearest then
+         impact%forced(hits%row(minloc(gaps(hits%row(:hits%n)), dim=1))) = .true.
+      end if
+      impact%new = impact%new .or. impact%forced
+      impact%near = impact%near .and. .not. impact%new
+   end subroutine choose_rows
+
+end module impact_choice
