@@ -8,8 +8,8 @@ module effective_system
    use steps, only: solver_mumps
    use skyline_matrix, only: skyline_type, profile_type, profile_entries, new_profile, &
          new_skyline, combine
-   use skyline_ldlt, only: factorize_skyline => factorize, solve_skyline => solve_many, &
-         ldlt_report_type
+   use skyline_ldlt, only: factorize_skyline => factorize, solve_skyline => solve, &
+         solve_skylines => solve_many, ldlt_report_type
    use sparse_matrix, only: pattern_type, sparse_report_type, is_same, diagonal_places
    use mumps_solver, only: mumps_type, mumps_available, analyse, discard, &
          factorize_sparse => factorize, solve_sparse => solve
@@ -285,10 +285,13 @@ contains
       type(skyline_type), intent(out) :: matrix
       real(wp), intent(in) :: values(:)
       type(profile_type) :: profile
+      integer :: j
 
       call new_profile(profile, size(values))
       call new_skyline(matrix, profile)
-      matrix%values = values
+      do j = 1, size(values)
+         call matrix%add(j, j, values(j))
+      end do
    end subroutine make_diagonal
 
    subroutine name_singular(structure, equation, error)
@@ -334,8 +337,10 @@ contains
          if (slot%is_sparse) then
             call solve_sparse(slot%sparse, b, failure)
             if (allocated(failure)) b = ieee_value(b, ieee_quiet_nan)
+         else if (n_columns == 1) then
+            call solve_skyline(slot%matrix, b(:, 1))
          else
-            call solve_skyline(slot%matrix, b)
+            call solve_skylines(slot%matrix, b)
          end if
       end associate
       self%n_solves = self%n_solves + n_columns

@@ -132,9 +132,9 @@ contains
       type(cost_type), intent(in) :: sparse
 
       self%text = 'SOLVER=AUTO: '//trim(merge('skyline', 'MUMPS  ', self%taken == solver_skyline)) &
-            //'; for '//counted(self%work%n_factorizations, 'factorization')//' and ' &
-            //counted(self%work%n_solves, 'solution')//' the skyline should take ' &
-            //seconds(self%skyline)//', the sparse solver '//seconds(sparse)
+            //', foreseen are '//counted(self%work%n_factorizations, 'factorization')//' and ' &
+            //counted(self%work%n_solves, 'solution')//';'//new_line('a') &
+            //'    skyline '//seconds(self%skyline)//', sparse '//seconds(sparse)
 
    contains
 

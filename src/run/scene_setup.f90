@@ -7,9 +7,7 @@ module scene_setup
    use places, only: fail_at, note_at, source_line_type
    use model, only: model_type
    use mesh, only: scheme_implicit, scheme_explicit
-   use steps, only: step_type, procedure_static, procedure_dynamic, procedure_frequency, &
-         solver_skyline, solver_mumps
-   use mumps_solver, only: mumps_available
+   use steps, only: step_type, procedure_static, procedure_dynamic, procedure_frequency
    use histories, only: boundary_type, nodal_value_type
    use structure, only: structure_type, new_structure, freedom_name, diagonal_mass
    use redistributed_mass, only: mark_contact_nodes
@@ -17,7 +15,7 @@ module scene_setup
    use external_load, only: begin_loads
    use prescribed_motion, only: begin_motions, start_motions, prescribed_freedoms
    use equation_of_motion, only: system_type, impose
-   use solver_choice, only: work_type
+   use solver_setup, only: begin_matrices
    use critical_step, only: critical_type, find_critical
    use contact_pairs, only: contact_pair_list_type
    use impact_scene, only: scene_type, contact_motion_type, new_contact_motion
@@ -229,7 +227,7 @@ contains
          if (step%explicit) system%structure%groups%scheme = scheme_explicit
          call begin_conditions(self, i_step, t)
          call number_anew(self)
-         call begin_matrices(self, step, error)
+         call begin_matrices(system, step, count_increments(step), self%model%source, error)
          if (allocated(error)) return
          call find_massless(system)
          self%scene%explicit%ready = .false.
@@ -269,35 +267,6 @@ contains
          self%critical_gamma = -1.0_wp
       end associate
    end subroutine number_anew
-
-   !> Chooses the solver for the work of a step: one factorization of K* and one of M if the
-   !> structure is linear, else some three iterations an increment; impacts are not foreseen.
-   subroutine begin_matrices(self, step, error)
-      type(simulation_type), intent(inout) :: self
-      type(step_type), intent(in) :: step
-      type(error_type), allocatable, intent(out) :: error
-      type(work_type) :: work
-
-      if (step%solver == solver_mumps .and. .not. mumps_available()) then
-         call fail_at(error, self%model%source, step%solver_place, &
-               'SOLVER=MUMPS, but this program was built without MUMPS', 'take SOLVER=AUTO or ' &
-               //'SKYLINE, or build with the CMake option CAROM_MUMPS=ON')
-         return
-      end if
-      work%wanted = step%solver
-      if (step%procedure == procedure_frequency) work%wanted = solver_skyline
-      work%n_solves = real(count_increments(step), wp)
-      work%n_factorizations = 1.0_wp
-      associate (system => self%scene%system)
-         if (.not. system%structure%is_linear) then
-            work%n_solves = 3.0_wp*work%n_solves
-            work%n_factorizations = work%n_solves
-         else if (.not. system%static) then
-            work%n_factorizations = 2.0_wp
-         end if
-         call system%matrices%begin(system%structure, system%profile, work, error)
-      end associate
-   end subroutine begin_matrices
 
    !> The frames of a frequency step have frequencies for times: no other step may follow, and none
    !> before it but static ones.
