@@ -68,6 +68,7 @@ class Bench:
         self.work = Path(given.output) / "work"
         self.work.mkdir(parents=True, exist_ok=True)
         self.matrices = {}
+        self.sparse = {}
         self.figures = {}
         self.others = {}
         self.watch = Watch()

@@ -29,12 +29,20 @@ def machine(bench):
 
 
 def matrix(bench, n, threads, seconds):
-    """K* of n by n CPE8: raw figures of the driver; the same size with fewer threads is kept."""
+    """K* of n by n CPE8: raw figures of the driver, the skyline's and MUMPS's; kept."""
     if (n, threads) not in bench.matrices:
         deck = write(bench.work, f"q8_{n}.inp", implicit_block(n))
-        bench.matrices[n, threads] = bench.programs.kernels("matrix", deck, threads, max(1, round(seconds)))
+        found = bench.programs.kernels("matrix", deck, threads, max(0, round(seconds)))
+        bench.matrices[n, threads] = {**found, **sparse(bench, n, deck, 0.5 * seconds)}
         deck.unlink()
     return bench.matrices[n, threads]
+
+
+def sparse(bench, n, deck, seconds):
+    """The same matrix with MUMPS; nothing in a build without it."""
+    if n not in bench.sparse:
+        bench.sparse[n] = bench.programs.kernels("sparse", deck, max(0, round(seconds)))
+    return {k: v for k, v in bench.sparse[n].items() if k.startswith(("mumps", "direct"))}
 
 
 def factor(bench, n):
@@ -63,35 +71,48 @@ def factor(bench, n):
             )
         keys[f"dgemm_{n}{more}_speedup"] = found[f"dgemm_flops{more}"] / found["dgemm_flops_1t"]
         keys[f"read_{n}{more}_speedup"] = found[f"read_bytes{more}"] / found["read_bytes_1t"]
-    for name in ("mumps_factor", "mumps_solve"):
-        if f"{name}_seconds_1t" in found:
-            keys[f"{name}_{n}_seconds_1t"] = found[f"{name}_seconds_1t"]
-    if "mumps_ratio_direct" in found:
-        keys[f"mumps_{n}_ratio_direct"] = found["mumps_ratio_direct"]
+    if "mumps_factor_seconds" in found:
+        own, direct = (
+            found[f"{who}_factor_seconds"] + found[f"{who}_solve_seconds"]
+            for who in ("mumps", "direct")
+        )
+        keys[f"mumps_{n}_ratio_direct"] = own / direct
+        keys[f"mumps_{n}_difference"] = found["mumps_difference"]
+        for name in ("analyse", "factor", "solve"):
+            keys[f"mumps_{n}_{name}_seconds"] = found[f"mumps_{name}_seconds"]
+            keys[f"mumps_{n}_{name}_ratio_direct"] = (
+                found[f"mumps_{name}_seconds"] / found[f"direct_{name}_seconds"]
+            )
     return keys
 
 
 def growth(bench, sizes, memory_limit):
     """The same for many sizes, as rows of numbers; the skyline ends where its memory would not
     fit."""
-    rows = []
-    for n in sizes:
-        # 6 n^2 equations with columns of 3 n to 5 n entries
-        need = 8.0 * 6 * n**2 * 5.2 * n
-        if need > memory_limit:
-            bench.say(f"{n} by {n} elements: the skyline needs about {need / 1e9:.0f} GB of the "
-                      f"{memory_limit / 1e9:.0f} GB that may be used: left out")
-            rows.append({"n": n, "equations": 6 * n**2 + 2 * n, "skipped": "memory"})
-            continue
-        if bench.late(bench.expected_factor(n)):
-            rows.append({"n": n, "equations": 6 * n**2 + 2 * n, "skipped": "time"})
-            continue
-        found = bench.matrices.get((n, bench.threads)) or matrix(bench, n, 1, 0)
-        rows.append({"n": n, **found})
-        bench.say(f"{n} by {n}: {found['equations']:.0f} equations, factor "
-                  f"{found['factor_seconds_1t']:.3g} s, solve {found['solve_seconds_1t']:.3g} s, "
-                  f"{1e-6 * found['stored_bytes']:.4g} MB")
-    return rows
+    return [row_of_size(bench, n, memory_limit) for n in sizes]
+
+
+def row_of_size(bench, n, memory_limit):
+    """One size: what could be measured, and why the rest could not."""
+    row = {"n": n, "equations": 6 * n**2 + 2 * n}
+    need = 8.0 * row["equations"] * 5.2 * n     # columns are 5 n entries high and a little more
+    if need > memory_limit:
+        row["skipped"] = (f"the skyline needs about {need / 1e9:.0f} GB, "
+                          f"{memory_limit / 1e9:.0f} GB may be used")
+    elif bench.late(bench.expected_factor(n)):
+        row["skipped"] = "no time left of --quick"
+    else:
+        row.update(bench.matrices.get((n, bench.threads)) or matrix(bench, n, 1, 0))
+    if "skipped" in row and not bench.late(5.0):
+        deck = write(bench.work, f"q8_{n}.inp", implicit_block(n))
+        row.update(sparse(bench, n, deck, 0))
+        deck.unlink()
+    shown = ("factor_seconds_1t", "solve_seconds_1t", "stored_bytes", "mumps_factor_seconds",
+             "mumps_solve_seconds", "mumps_bytes", "skipped")
+    bench.say(f"{n} by {n}, {row['equations']:.0f} equations: " + ", ".join(
+        f"{key} {row[key]:.3g}" if isinstance(row[key], float) else row[key]
+        for key in shown if key in row))
+    return row
 
 
 def explicit(bench, n, plastic=False):
