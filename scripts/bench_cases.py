@@ -7,12 +7,21 @@ from pathlib import Path
 
 import numpy as np
 from bench_decks import FIELDS, explicit_block, implicit_block, parse_block
-from bench_runs import Finished, last_line, step_seconds
+from bench_runs import Finished, last_line, step_seconds, step_size
 from carom_results import Results, ScriptError
 from exact_solutions import oscillator
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "input" / "block"))
+
+
+# Words of the deck of the block, and those that stand for them
+HOW = "METHOD=TRANSFORMATION"
+BLOCK_IMPACTS = {
+    "": None,
+    "_anchor": (HOW, HOW + ", EVENTS=ANCHOR"),
+    "_penalty": (HOW, "METHOD=PENALTY, STIFFNESS=1800"),
+}
 
 
 def write(folder, name, text):
@@ -138,40 +147,45 @@ def output_share(bench, n):
 
 
 def block(bench, n=40):
-    """A step of n by n CPE8 that meet a wall: the whole deck of input/block, contact included, less
-    its first steps; of a run that would take too long as many steps as there is time for."""
-    from make_block import FLIGHT, texts
+    """A step of n by n CPE8 that meet a wall: the deck of input/block, contact included, less its
+    first steps; as it is kept there, and with other ways to treat the impact."""
+    keys = {}
+    for name, impact in BLOCK_IMPACTS.items():
+        try:
+            keys.update(block_with(bench, n, name, impact))
+        except ScriptError as error:
+            keys[f"block{name}_step_ms"] = str(error)
+    return keys
 
-    folder = bench.work / "block"
+
+def block_with(bench, n, name, impact):
+    """One way to treat the impact. A run that takes too long is ended: its steps so far count."""
+    from make_block import texts
+
+    folder = bench.work / f"block{name}"
     folder.mkdir(exist_ok=True)
-    for name, text in texts(n).items():
-        (folder / name).write_text(text)
+    for file, text in texts(n).items():
+        (folder / file).write_text(text.replace(*impact) if impact else text)
     deck = folder / "block.inp"
-    lines = dict(line.split(" = ") for line in deck.read_text().splitlines() if " = " in line)
-    dt, end = float(lines["dt"]), float(lines["end"])
-    steps = whole = round(end / dt)
-    limit = 20.0 if bench.quick else 200.0
-    start = bench.programs.run(deck, end=repr(2 * dt))["seconds"]
-    few = round(FLIGHT) + 5
-    trial = bench.programs.run(deck, limit=5 * limit, end=repr(few * dt))["seconds"]
-    each = max(1e-6, (trial - start) / (few - 2))
-    steps = max(few, min(whole, round(limit / each)))
-    keys, best = {}, {}
-    for _ in range(bench.rounds if each * whole < limit / 10 else 1):
-        for threads in sorted({1, bench.threads}):
-            long = bench.programs.run(deck, threads, end=repr(steps * dt))
-            short = bench.programs.run(deck, threads, end=repr(2 * dt))
-            before = best.get(threads, (1e9, 1e9))
-            best[threads] = (min(long["seconds"], before[0]), min(short["seconds"], before[1]))
-    for threads, (all_steps, first) in best.items():
+    dt = step_size(deck)
+    limit = 20.0 if bench.quick else 120.0
+    keys = {}
+    for threads in [1] if name or bench.threads == 1 else [1, bench.threads]:
+        rounds = []
+        for _ in range(bench.rounds):
+            short = bench.programs.run(deck, threads, end=repr(2 * dt))["seconds"]
+            long = bench.programs.run(deck, threads, limit=limit, late=True)
+            rounds.append((long["seconds"] - short) / (long["increments"] - 2))
+            if long["late"]:
+                break
         ending = "" if threads == 1 else f"_{threads}t"
-        keys[f"block_step_ms{ending}"] = 1e3 * (all_steps - first) / (steps - 2)
-    keys["block_steps"], keys["block_steps_of_deck"] = steps, whole
-    keys["block_solves_per_step"] = long["solves"] / steps
-    keys["block_factorizations"] = long["factorizations"]
-    keys["block_start_ms"] = 1e3 * best[1][1]
-    with Results(str(long["output"])) as results:
-        keys["block_balance_error"] = relative_balance(results)
+        keys[f"block{name}_step_ms{ending}"] = 1e3 * min(rounds)
+    keys[f"block{name}_steps"] = long["increments"]
+    if not long["late"]:
+        keys[f"block{name}_solves_per_step"] = long["solves"] / long["increments"]
+        keys[f"block{name}_factorizations"] = long["factorizations"]
+        with Results(str(long["output"])) as results:
+            keys[f"block{name}_balance_error"] = relative_balance(results)
     return keys
 
 
@@ -191,7 +205,7 @@ def sdof_text(**changes):
     return text
 
 
-ANCHOR = ("METHOD=TRANSFORMATION", "METHOD=TRANSFORMATION, EVENTS=ANCHOR")
+ANCHOR = ("RESTITUTION=<e>, BETA=1/6", "RESTITUTION=<e>, EVENTS=ANCHOR")
 LINEAR = ("*DYNAMIC, DIRECT", "*DYNAMIC, DIRECT, BETA=0.16666666666666667")
 FAR = ("-0.5, 0, 0", "-50, 0, 0")
 

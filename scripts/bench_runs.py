@@ -77,19 +77,22 @@ class Programs:
             raise ScriptError(f"carom_kernels {words[0]}: {last_line(done.errors)}")
         return {**figures(done.output), "seconds": done.seconds, "memory": done.memory}
 
-    def run(self, deck, threads=1, log=True, limit=RUN_LIMIT, **definitions):
-        """A run of a deck: its seconds and memory, and what its log counts."""
+    def run(self, deck, threads=1, log=True, limit=RUN_LIMIT, late=False, **definitions):
+        """A run of a deck: its seconds and memory, and what its log counts. With `late` one that is
+        stopped at the limit counts up to there."""
         output = deck.with_suffix(".h5")
         command = [self.carom, "run", deck, "-o", output, "--quiet", "--threads", threads]
         for name, value in definitions.items():
             command += ["--define", f"{name}={value}"]
         done = Finished(command, limit)
-        if done.late:
+        if done.late and not late:
             raise ScriptError(f"carom run {deck.name}: stopped after {limit:.0f} s")
-        if done.status != 0:
+        if done.status != 0 and not done.late:
             raise ScriptError(f"carom run {deck.name}: {last_line(done.errors)}")
-        found = {"seconds": done.seconds, "memory": done.memory, "output": output}
+        found = {"seconds": done.seconds, "memory": done.memory, "output": output,
+                 "late": done.late}
         if log:
+            found["increments"] = increments(output.with_suffix(".sta"))
             found.update(counts(output.with_suffix(".log").read_text()))
         return found
 
@@ -97,6 +100,11 @@ class Programs:
 def last_line(text):
     """What a program said last."""
     return (text.strip().splitlines() or ["ended without a word"])[0]
+
+
+def increments(path):
+    """Increments in a status file."""
+    return sum(line.split()[:1] == ["1"] for line in path.read_text().splitlines())
 
 
 def counts(log):
