@@ -7,12 +7,21 @@ from pathlib import Path
 
 import numpy as np
 from bench_decks import FIELDS, explicit_block, implicit_block, parse_block
-from bench_runs import Finished, last_line, step_seconds
+from bench_runs import Finished, last_line, step_seconds, step_size
 from carom_results import Results, ScriptError
 from exact_solutions import oscillator
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "input" / "block"))
+
+
+# Words of the deck of the block, and those that stand for them
+HOW = "METHOD=TRANSFORMATION"
+BLOCK_IMPACTS = {
+    "": None,
+    "_anchor": (HOW, HOW + ", EVENTS=ANCHOR"),
+    "_penalty": (HOW, "METHOD=PENALTY, STIFFNESS=1800"),
+}
 
 
 def write(folder, name, text):
@@ -29,12 +38,20 @@ def machine(bench):
 
 
 def matrix(bench, n, threads, seconds):
-    """K* of n by n CPE8: raw figures of the driver; the same size with fewer threads is kept."""
+    """K* of n by n CPE8: raw figures of the driver, the skyline's and MUMPS's; kept."""
     if (n, threads) not in bench.matrices:
         deck = write(bench.work, f"q8_{n}.inp", implicit_block(n))
-        bench.matrices[n, threads] = bench.programs.kernels("matrix", deck, threads, max(1, round(seconds)))
+        found = bench.programs.kernels("matrix", deck, threads, max(0, round(seconds)))
+        bench.matrices[n, threads] = {**found, **sparse(bench, n, deck, 0.5 * seconds)}
         deck.unlink()
     return bench.matrices[n, threads]
+
+
+def sparse(bench, n, deck, seconds):
+    """The same matrix with MUMPS; nothing in a build without it."""
+    if n not in bench.sparse:
+        bench.sparse[n] = bench.programs.kernels("sparse", deck, max(0, round(seconds)))
+    return {k: v for k, v in bench.sparse[n].items() if k.startswith(("mumps", "direct"))}
 
 
 def factor(bench, n):
@@ -63,35 +80,48 @@ def factor(bench, n):
             )
         keys[f"dgemm_{n}{more}_speedup"] = found[f"dgemm_flops{more}"] / found["dgemm_flops_1t"]
         keys[f"read_{n}{more}_speedup"] = found[f"read_bytes{more}"] / found["read_bytes_1t"]
-    for name in ("mumps_factor", "mumps_solve"):
-        if f"{name}_seconds_1t" in found:
-            keys[f"{name}_{n}_seconds_1t"] = found[f"{name}_seconds_1t"]
-    if "mumps_ratio_direct" in found:
-        keys[f"mumps_{n}_ratio_direct"] = found["mumps_ratio_direct"]
+    if "mumps_factor_seconds" in found:
+        own, direct = (
+            found[f"{who}_factor_seconds"] + found[f"{who}_solve_seconds"]
+            for who in ("mumps", "direct")
+        )
+        keys[f"mumps_{n}_ratio_direct"] = own / direct
+        keys[f"mumps_{n}_difference"] = found["mumps_difference"]
+        for name in ("analyse", "factor", "solve"):
+            keys[f"mumps_{n}_{name}_seconds"] = found[f"mumps_{name}_seconds"]
+            keys[f"mumps_{n}_{name}_ratio_direct"] = (
+                found[f"mumps_{name}_seconds"] / found[f"direct_{name}_seconds"]
+            )
     return keys
 
 
 def growth(bench, sizes, memory_limit):
     """The same for many sizes, as rows of numbers; the skyline ends where its memory would not
     fit."""
-    rows = []
-    for n in sizes:
-        # 6 n^2 equations with columns of 3 n to 5 n entries
-        need = 8.0 * 6 * n**2 * 5.2 * n
-        if need > memory_limit:
-            bench.say(f"{n} by {n} elements: the skyline needs about {need / 1e9:.0f} GB of the "
-                      f"{memory_limit / 1e9:.0f} GB that may be used: left out")
-            rows.append({"n": n, "equations": 6 * n**2 + 2 * n, "skipped": "memory"})
-            continue
-        if bench.late(bench.expected_factor(n)):
-            rows.append({"n": n, "equations": 6 * n**2 + 2 * n, "skipped": "time"})
-            continue
-        found = bench.matrices.get((n, bench.threads)) or matrix(bench, n, 1, 0)
-        rows.append({"n": n, **found})
-        bench.say(f"{n} by {n}: {found['equations']:.0f} equations, factor "
-                  f"{found['factor_seconds_1t']:.3g} s, solve {found['solve_seconds_1t']:.3g} s, "
-                  f"{1e-6 * found['stored_bytes']:.4g} MB")
-    return rows
+    return [row_of_size(bench, n, memory_limit) for n in sizes]
+
+
+def row_of_size(bench, n, memory_limit):
+    """One size: what could be measured, and why the rest could not."""
+    row = {"n": n, "equations": 6 * n**2 + 2 * n}
+    need = 8.0 * row["equations"] * 5.2 * n     # columns are 5 n entries high and a little more
+    if need > memory_limit:
+        row["skipped"] = (f"the skyline needs about {need / 1e9:.0f} GB, "
+                          f"{memory_limit / 1e9:.0f} GB may be used")
+    elif bench.late(bench.expected_factor(n)):
+        row["skipped"] = "no time left of --quick"
+    else:
+        row.update(bench.matrices.get((n, bench.threads)) or matrix(bench, n, 1, 0))
+    if "skipped" in row and not bench.late(5.0):
+        deck = write(bench.work, f"q8_{n}.inp", implicit_block(n))
+        row.update(sparse(bench, n, deck, 0))
+        deck.unlink()
+    shown = ("factor_seconds_1t", "solve_seconds_1t", "stored_bytes", "mumps_factor_seconds",
+             "mumps_solve_seconds", "mumps_bytes", "skipped")
+    bench.say(f"{n} by {n}, {row['equations']:.0f} equations: " + ", ".join(
+        f"{key} {row[key]:.3g}" if isinstance(row[key], float) else row[key]
+        for key in shown if key in row))
+    return row
 
 
 def explicit(bench, n, plastic=False):
@@ -99,8 +129,9 @@ def explicit(bench, n, plastic=False):
     name = "explicit_j2" if plastic else "explicit_q4"
     deck = write(bench.work, f"{name}.inp", explicit_block(n, plastic))
     threads = [1] if bench.threads == 1 else [1, bench.threads]
-    times, _ = step_seconds(bench.programs, deck, threads, bench.seconds)
-    keys = {f"{name}_updates_1t": n * n / times[1], f"{name}_elements": n * n}
+    times = step_seconds(bench.programs, deck, threads, bench.seconds)
+    keys = {f"{name}_updates_1t": n * n / times[1], f"{name}_elements": n * n,
+            f"{name}_updates_cpu_1t": n * n / times[0]}
     if bench.threads > 1:
         speedup = "explicit_j2" if plastic else "explicit"
         keys[f"{speedup}_{bench.threads}t_speedup"] = times[1] / times[bench.threads]
@@ -111,46 +142,54 @@ def output_share(bench, n):
     """Part of the time that a frame every ten steps takes, explicit n by n CPE4."""
     bare = write(bench.work, "frames_none.inp", explicit_block(n))
     full = write(bench.work, "frames.inp", explicit_block(n, requests=FIELDS))
-    without, _ = step_seconds(bench.programs, bare, [1], 0.5 * bench.seconds)
-    with_frames, _ = step_seconds(bench.programs, full, [1], 0.5 * bench.seconds)
+    without = step_seconds(bench.programs, bare, [1], 0.5 * bench.seconds)
+    with_frames = step_seconds(bench.programs, full, [1], 0.5 * bench.seconds)
     return {"output_share": 1.0 - without[1] / with_frames[1]}
 
 
 def block(bench, n=40):
-    """A step of n by n CPE8 that meet a wall: the whole deck of input/block, contact included, less
-    its first steps; of a run that would take too long as many steps as there is time for."""
-    from make_block import FLIGHT, texts
+    """A step of n by n CPE8 that meet a wall: the deck of input/block, contact included, less its
+    first steps; as it is kept there, and with other ways to treat the impact."""
+    keys = {}
+    for name, impact in BLOCK_IMPACTS.items():
+        try:
+            keys.update(block_with(bench, n, name, impact))
+        except ScriptError as error:
+            keys[f"block{name}_step_ms"] = str(error)
+    return keys
 
-    folder = bench.work / "block"
+
+def block_with(bench, n, name, impact):
+    """One way to treat the impact. A run that takes too long is ended: its steps so far count."""
+    from make_block import texts
+
+    folder = bench.work / f"block{name}"
     folder.mkdir(exist_ok=True)
-    for name, text in texts(n).items():
-        (folder / name).write_text(text)
+    for file, text in texts(n).items():
+        (folder / file).write_text(text.replace(*impact) if impact else text)
     deck = folder / "block.inp"
-    lines = dict(line.split(" = ") for line in deck.read_text().splitlines() if " = " in line)
-    dt, end = float(lines["dt"]), float(lines["end"])
-    steps = whole = round(end / dt)
-    limit = 20.0 if bench.quick else 200.0
-    start = bench.programs.run(deck, end=repr(2 * dt))["seconds"]
-    few = round(FLIGHT) + 5
-    trial = bench.programs.run(deck, limit=5 * limit, end=repr(few * dt))["seconds"]
-    each = max(1e-6, (trial - start) / (few - 2))
-    steps = max(few, min(whole, round(limit / each)))
-    keys, best = {}, {}
-    for _ in range(bench.rounds if each * whole < limit / 10 else 1):
-        for threads in sorted({1, bench.threads}):
-            long = bench.programs.run(deck, threads, end=repr(steps * dt))
+    dt = step_size(deck)
+    limit = 20.0 if bench.quick else 120.0
+    keys = {}
+    for threads in [1] if name or bench.threads == 1 else [1, bench.threads]:
+        rounds = []
+        for _ in range(bench.rounds):
             short = bench.programs.run(deck, threads, end=repr(2 * dt))
-            before = best.get(threads, (1e9, 1e9))
-            best[threads] = (min(long["seconds"], before[0]), min(short["seconds"], before[1]))
-    for threads, (all_steps, first) in best.items():
+            long = bench.programs.run(deck, threads, limit=limit, late=True)
+            rounds.append([(long[what] - short[what]) / (long["increments"] - 2)
+                           for what in ("seconds", "cpu")])
+            if long["late"]:
+                break
         ending = "" if threads == 1 else f"_{threads}t"
-        keys[f"block_step_ms{ending}"] = 1e3 * (all_steps - first) / (steps - 2)
-    keys["block_steps"], keys["block_steps_of_deck"] = steps, whole
-    keys["block_solves_per_step"] = long["solves"] / steps
-    keys["block_factorizations"] = long["factorizations"]
-    keys["block_start_ms"] = 1e3 * best[1][1]
-    with Results(str(long["output"])) as results:
-        keys["block_balance_error"] = relative_balance(results)
+        keys[f"block{name}_step_ms{ending}"] = 1e3 * min(seconds for seconds, _ in rounds)
+        if threads == 1:
+            keys[f"block{name}_step_cpu_ms"] = 1e3 * min(cpu for _, cpu in rounds)
+    keys[f"block{name}_steps"] = long["increments"]
+    if not long["late"]:
+        keys[f"block{name}_solves_per_step"] = long["solves"] / long["increments"]
+        keys[f"block{name}_factorizations"] = long["factorizations"]
+        with Results(str(long["output"])) as results:
+            keys[f"block{name}_balance_error"] = relative_balance(results)
     return keys
 
 
@@ -170,7 +209,7 @@ def sdof_text(**changes):
     return text
 
 
-ANCHOR = ("METHOD=TRANSFORMATION", "METHOD=TRANSFORMATION, EVENTS=ANCHOR")
+ANCHOR = ("RESTITUTION=<e>, BETA=1/6", "RESTITUTION=<e>, EVENTS=ANCHOR")
 LINEAR = ("*DYNAMIC, DIRECT", "*DYNAMIC, DIRECT, BETA=0.16666666666666667")
 FAR = ("-0.5, 0, 0", "-50, 0, 0")
 
@@ -186,11 +225,13 @@ def sdof(bench, dt=0.08):
     """The whole process of the oscillator to t = 20 in 250 steps, the acceleration linear in each:
     the median of 20."""
     deck = write(bench.work, "sdof.inp", sdof_text(linear=LINEAR))
-    done = [bench.programs.run(deck, log=False, dt=dt)["seconds"] for _ in range(20)]
+    runs = [bench.programs.run(deck, log=False, dt=dt) for _ in range(20)]
+    done = [run["seconds"] for run in runs]
     with Results(str(deck.with_suffix(".h5"))) as results:
         error = sdof_error(results)
     return {"sdof_process_ms": 1e3 * statistics.median(done),
-            "sdof_process_best_ms": 1e3 * min(done), "sdof_error": error}
+            "sdof_process_best_ms": 1e3 * min(done),
+            "sdof_cpu_ms": 1e3 * min(run["cpu"] for run in runs), "sdof_error": error}
 
 
 def event_solves(bench):
@@ -220,6 +261,7 @@ def parse(bench, n):
     if not bench.late(5 * seconds):
         run = bench.programs.run(deck, end=step_of(deck))
         keys["startup_1e6_s"] = run["seconds"] * 1e6 / keys["parse_nodes"]
+        keys["startup_1e6_cpu_s"] = run["cpu"] * 1e6 / keys["parse_nodes"]
         keys["startup_bytes_per_node"] = run["memory"] / keys["parse_nodes"]
     deck.unlink()
     return keys

@@ -14,7 +14,7 @@ RUN_LIMIT = 600.0         # seconds that a run may take
 
 
 class Finished:
-    """A process that has ended: seconds, output, largest memory in bytes."""
+    """A process that has ended: seconds, processor time, output, largest memory in bytes."""
 
     def __init__(self, command, limit=None, env=None):
         started = time.perf_counter()
@@ -26,6 +26,7 @@ class Finished:
             self.late, usage = wait(process, None if limit is None else started + limit)
             self.seconds = time.perf_counter() - started
             self.status = process.returncode
+            self.cpu = usage.ru_utime + usage.ru_stime
             self.memory = 1024 * usage.ru_maxrss
             out.seek(0)
             err.seek(0)
@@ -77,19 +78,22 @@ class Programs:
             raise ScriptError(f"carom_kernels {words[0]}: {last_line(done.errors)}")
         return {**figures(done.output), "seconds": done.seconds, "memory": done.memory}
 
-    def run(self, deck, threads=1, log=True, limit=RUN_LIMIT, **definitions):
-        """A run of a deck: its seconds and memory, and what its log counts."""
+    def run(self, deck, threads=1, log=True, limit=RUN_LIMIT, late=False, **definitions):
+        """A run of a deck: its seconds and memory, and what its log counts. With `late` one that is
+        stopped at the limit counts up to there."""
         output = deck.with_suffix(".h5")
         command = [self.carom, "run", deck, "-o", output, "--quiet", "--threads", threads]
         for name, value in definitions.items():
             command += ["--define", f"{name}={value}"]
         done = Finished(command, limit)
-        if done.late:
+        if done.late and not late:
             raise ScriptError(f"carom run {deck.name}: stopped after {limit:.0f} s")
-        if done.status != 0:
+        if done.status != 0 and not done.late:
             raise ScriptError(f"carom run {deck.name}: {last_line(done.errors)}")
-        found = {"seconds": done.seconds, "memory": done.memory, "output": output}
+        found = {"seconds": done.seconds, "cpu": done.cpu, "memory": done.memory, "output": output,
+                 "late": done.late}
         if log:
+            found["increments"] = increments(output.with_suffix(".sta"))
             found.update(counts(output.with_suffix(".log").read_text()))
         return found
 
@@ -97,6 +101,11 @@ class Programs:
 def last_line(text):
     """What a program said last."""
     return (text.strip().splitlines() or ["ended without a word"])[0]
+
+
+def increments(path):
+    """Increments in a status file."""
+    return sum(line.split()[:1] == ["1"] for line in path.read_text().splitlines())
 
 
 def counts(log):
@@ -121,27 +130,30 @@ def step_size(deck):
 
 def step_seconds(programs, deck, threads, seconds, rounds=2):
     """The time of a step for each number of threads, from the difference of a short and a long run
-    of about so many seconds: starting and ending drop out. Also the short run's time."""
+    of about so many seconds: starting and ending drop out. Under 0 the processor time of a step with
+    the first number of threads: what the time would be if nobody else used the core."""
     dt = step_size(deck)
 
     def run(n, t):
-        return programs.run(deck, t, end=repr(n * dt))["seconds"]
+        done = programs.run(deck, t, end=repr(n * dt))
+        return [done["seconds"], done["cpu"]]
 
     more = FEWEST_STEPS
-    short = run(FEWEST_STEPS, 1)
-    while True:  # how many steps are needed to see their time
-        spent = run(FEWEST_STEPS + more, 1) - short
+    short = run(FEWEST_STEPS, 1)[1]
+    while True:  # how many steps are needed to see their time, whatever others do
+        spent = run(FEWEST_STEPS + more, 1)[1] - short
         if spent > 0.2 * seconds or more >= 1000000:
             break
         more *= 4
     more = max(more, int(more * seconds / spent))
-    best = {}
+    best = {t: [[1e9, 1e9], [1e9, 1e9]] for t in threads}
     for _ in range(rounds):
         for t in threads:
-            low, high = run(FEWEST_STEPS, t), run(FEWEST_STEPS + more, t)
-            before = best.get(t, (low, high))
-            best[t] = (min(low, before[0]), min(high, before[1]))
-    return {t: (high - low) / more for t, (low, high) in best.items()}, best[threads[0]][0]
+            for i, n in enumerate((FEWEST_STEPS, FEWEST_STEPS + more)):
+                best[t][i] = [min(pair) for pair in zip(best[t][i], run(n, t))]
+    times = {t: (long[0] - short[0]) / more for t, (short, long) in best.items()}
+    short, long = best[threads[0]]
+    return {0: (long[1] - short[1]) / more, **times}
 
 
 class Watch:

@@ -4,6 +4,8 @@
 !>     kernels read DECK                  reading a deck, building the model
 !>     kernels matrix DECK THREADS SEC    the effective matrix of its first step; rounds for SEC
 !>                                        seconds, by turns with one thread and with THREADS
+!>     kernels sparse DECK SEC            the same matrix with MUMPS, through carom and directly;
+!>                                        nothing in a build without MUMPS
 program kernels
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
    use kinds, only: wp, int64
@@ -15,6 +17,8 @@ program kernels
    use scene_setup, only: simulation_type, build_scene, begin_step
    use machine_rates, only: rates_type, new_rates, product_rate, read_rate, triad_rate
    use matrix_timing, only: timing_type, new_timing, time_round, column_operations
+   use mumps_solver, only: mumps_available
+   use sparse_timing, only: sparse_timing_type, time_sparse
    implicit none
 
    select case (word(1))
@@ -24,8 +28,11 @@ program kernels
       call time_reading(word(2))
    case ('matrix')
       call time_matrix(word(2), number(3), real(number(4), wp))
+   case ('sparse')
+      call time_sparse_matrix(word(2), real(number(3), wp))
    case default
-      write (error_unit, '(a)') 'kernels machine THREADS | read DECK | matrix DECK THREADS SECONDS'
+      write (error_unit, '(a)') 'kernels machine THREADS | read DECK | matrix DECK THREADS ' &
+            //'SECONDS | sparse DECK SECONDS'
       stop 1
    end select
 
@@ -180,5 +187,32 @@ contains
       call show('read_bytes', timing%read_rate, timing%n_threads)
       call show('solution_error', timing%solution_error, timing%n_threads)
    end subroutine show_timing
+
+   !> Rounds for so many seconds with MUMPS.
+   subroutine time_sparse_matrix(path, seconds)
+      character(len=*), intent(in) :: path
+      real(wp), intent(in) :: seconds
+      type(simulation_type) :: simulation
+      type(sparse_timing_type) :: timing
+      type(error_type), allocatable :: error
+
+      if (.not. mumps_available()) return
+      call set_threads(1)
+      call prepare(simulation, path)
+      call time_sparse(timing, simulation, seconds, error)
+      call insist(error)
+      call show('mumps_rounds', real(timing%n_rounds, wp))
+      call show('mumps_matrix_entries', timing%matrix_entries)
+      call show('mumps_bytes', 8.0_wp*timing%entries)
+      call show('mumps_operations', timing%operations)
+      call show('mumps_assemble_seconds', timing%assemble)
+      call show('mumps_analyse_seconds', timing%analyse(1))
+      call show('mumps_factor_seconds', timing%factorize(1))
+      call show('mumps_solve_seconds', timing%solve(1))
+      call show('direct_analyse_seconds', timing%analyse(2))
+      call show('direct_factor_seconds', timing%factorize(2))
+      call show('direct_solve_seconds', timing%solve(2))
+      call show('mumps_difference', timing%difference)
+   end subroutine time_sparse_matrix
 
 end program kernels

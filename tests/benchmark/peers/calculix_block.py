@@ -15,9 +15,8 @@ GAP = 1.0           # steps' way to the wall, half of one spent on the way to fu
 
 
 def deck(n, steps):
-    """The problem in CalculiX's words; the wall is one element that is held. Without steps there is only
-    the one that drives the block up to its speed."""
-    from make_block import DENSITY, MODULUS, POISSON, SPEED
+    """The problem in CalculiX's words; the wall is one element that is held."""
+    from make_block import SPEED
     x, elements, face, dt = peer.block(n)
     sides = [e + 1 for e, ring in enumerate(elements) if ring[0] in face and ring[3] in face]
     first, wall = len(x) + 1, -GAP * SPEED * dt
@@ -33,7 +32,13 @@ def deck(n, steps):
     text += f'*ELEMENT, TYPE=CPE4, ELSET=anvil\n{last}, {first}, {first + 1}, {first + 2}, {first + 3}\n'
     text += '*SURFACE, NAME=front, TYPE=ELEMENT\n' + ''.join(f'{e}, S4\n' for e in sides)
     text += f'*SURFACE, NAME=anvil_face, TYPE=ELEMENT\n{last}, S2\n'
-    return text + (f'''*MATERIAL, NAME=elastic
+    return text + cards(n, dt, steps)
+
+
+def cards(n, dt, steps):
+    """All but the mesh. Without steps there is only the one that drives the block up to its speed."""
+    from make_block import DENSITY, MODULUS, POISSON, SPEED
+    text = f'''*MATERIAL, NAME=elastic
 *ELASTIC
 {MODULUS}, {POISSON}
 *DENSITY
@@ -57,13 +62,16 @@ front, anvil_face
 *BOUNDARY, AMPLITUDE=start
 block, 1, 1, 1
 *END STEP
-''') + (f'''*STEP, INC={steps}
+'''
+    if steps > 0:
+        text += f'''*STEP, INC={steps}
 *DYNAMIC
 {dt:.12e}, {1000 * dt:.12e}, {1e-4 * dt:.12e}, {dt:.12e}
 *BOUNDARY, OP=NEW
 wall, 1, 2
 *END STEP
-''' if steps > 0 else '')
+'''
+    return text
 
 
 def run(n, steps, folder):
