@@ -25,7 +25,7 @@ def error_of(run, exact):
 def counts(run):
     """Factorizations and solutions of a run, by its log."""
     log = run.path.with_suffix('.log').read_text()
-    return [int(n) for n in re.search(r'cost: (\d+) factorizations?, (\d+) solves', log).groups()]
+    return [int(n) for n in re.search(r'cost: (\d+) factorizations.*?, (\d+) solves', log).groups()]
 
 
 def change(run):
