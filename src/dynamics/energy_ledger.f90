@@ -174,10 +174,10 @@ contains
       force = 0.0_wp
       energy = 0.0_wp
       updated = state%history
-      call elastic_force(system%structure, scheme_implicit, state%d, state%history, force, updated, &
-            energy)
-      call elastic_force(system%structure, scheme_explicit, state%d, state%history, force, updated, &
-            energy)
+      call elastic_force(system%structure, scheme_implicit, state%d, state%history, force, &
+            updated, energy)
+      call elastic_force(system%structure, scheme_explicit, state%d, state%history, force, &
+            updated, energy)
       strain = energy(1)
       plastic = energy(2)
    end subroutine find_stored

@@ -91,7 +91,7 @@ contains
       shelf%w(:, shelf%n) = w
    end subroutine keep_column
 
-   !> The sum of some columns with factors: four at a time, for the sum has to go to memory and back.
+   !> The sum of some columns with factors: four at a time, for the sum goes to memory and back.
    pure subroutine add_columns(shelf, places, factors, total)
       type(shelf_type), intent(in) :: shelf
       integer, intent(in) :: places(:)

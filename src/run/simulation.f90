@@ -20,6 +20,7 @@ module simulation
    use step_start, only: start_step
    use increments, only: control_type, start_control, take_increment, take_automatic_increment
    use frequency_run, only: run_frequency_step
+   use memory_estimate, only: memory_type, estimate_memory, add_step_memory, memory_text
    use run_report, only: report_model, report_step, report_notes, report_summary
    implicit none
    private
@@ -62,6 +63,7 @@ contains
       type(log_type), intent(in) :: log
       logical, intent(in) :: aloud
       type(error_type), allocatable, intent(out) :: error
+      type(memory_type) :: memory
       integer :: i
 
       call build_scene(simulation, error)
@@ -70,11 +72,17 @@ contains
       do i = 1, size(simulation%model%steps)
          call begin_step(simulation, i, error)
          if (allocated(error)) return
-         if (aloud) call report_step(simulation, i, log)
+         if (aloud) then
+            call report_step(simulation, i, log)
+            call add_step_memory(memory, simulation, simulation%model%steps(i))
+         end if
          simulation%motion%motion%t = simulation%motion%motion%t &
                + simulation%model%steps(i)%duration
       end do
-      if (aloud) call report_notes(simulation, log)
+      if (.not. aloud) return
+      call estimate_memory(memory, simulation)
+      call say(log, memory_text(memory))
+      call report_notes(simulation, log)
    end subroutine prepare
 
    !> A whole run. Files are made only after the deck has been found sound.

@@ -1,0 +1,157 @@
+!> What memory a run will need: the model as it has been built to check it, which is measured, and
+!> what the increments add, item by item. All in bytes.
+module memory_estimate
+   use kinds, only: wp
+   use text, only: to_text
+   use memory_use, only: resident_memory
+   use skyline_matrix, only: profile_type, profile_entries
+   use panel_layout, only: panel_layout_type, new_panel_layout
+   use steps, only: step_type, procedure_static, solver_mumps
+   use surfaces, only: method_transformation
+   use output_plan, only: plan_type, new_plan
+   use scene_setup, only: simulation_type
+   implicit none
+   private
+
+   public :: memory_type, item_length, estimate_memory, add_step_memory, memory_text
+
+   integer, parameter :: item_length = 24
+   integer, parameter :: n_items = 5
+   integer, parameter :: item_model = 1, item_matrices = 2, item_state = 3, item_frames = 4, &
+         item_rows = 5
+   character(len=item_length), parameter :: names(n_items) = [character(len=item_length) :: &
+         'model', 'matrices', 'states', 'frames', 'rows']
+   real(wp), parameter :: real_bytes = 8.0_wp
+   !> Values of an element or a node from which frames of stress are made.
+   real(wp), parameter :: n_recovered = 14.0_wp
+   !> Largest profile, in entries, whose M, C and K are kept beside the factors.
+   real(wp), parameter :: most_kept = 2.0e7_wp
+
+   !> What is held while increments are taken, and the most that building the model took.
+   type :: memory_type
+      real(wp) :: items(n_items) = 0.0_wp
+      real(wp) :: start_up = 0.0_wp
+   end type memory_type
+
+contains
+
+   !> All but the matrices, which depend on the step.
+   subroutine estimate_memory(self, simulation)
+      type(memory_type), intent(inout) :: self
+      type(simulation_type), intent(in) :: simulation
+      real(wp) :: n_freedoms, n_history
+
+      call resident_memory(self%items(item_model), self%start_up)
+      associate (structure => simulation%scene%system%structure)
+         n_freedoms = real(structure%map%n_freedoms, wp)
+         n_history = real(structure%n_history, wp)
+      end associate
+      ! d, v, a, the forces beside them, of two states and the work between them
+      self%items(item_state) = real_bytes*(10.0_wp*n_freedoms + 3.0_wp*n_history)
+      call add_output(self, simulation)
+   end subroutine estimate_memory
+
+   !> Frames with the snapshot and the sums they are made from, and rows of the history.
+   subroutine add_output(self, simulation)
+      type(memory_type), intent(inout) :: self
+      type(simulation_type), intent(in) :: simulation
+      type(plan_type) :: plan
+      real(wp) :: n_nodes, n_cells, n_values, n_sums, n_columns, n_frames
+
+      call new_plan(plan, simulation%model)
+      associate (model => simulation%model)
+         n_nodes = real(model%nodes%n, wp)
+         n_cells = real(model%elements%n, wp)
+         n_values = 3.0_wp*n_nodes*real(1 + count(plan%file(2:4)), wp)
+         n_sums = 0.0_wp
+         if (any(plan%file(5:7))) then
+            n_values = n_values + 7.0_wp*(n_nodes + n_cells)
+            n_sums = n_recovered*(n_nodes + n_cells)
+         end if
+         n_frames = max(1.0_wp, min(256.0_wp, 65536.0_wp/max(1.0_wp, n_nodes, n_cells)))
+      end associate
+      self%items(item_frames) = real_bytes*(n_values*n_frames + n_sums &
+            + 8.0_wp*real(simulation%scene%system%structure%map%n_freedoms, wp))
+      n_columns = 3.0_wp*real(count(plan%node_print), wp) &
+            + 6.0_wp*real(count(plan%element_print), wp)
+      self%items(item_rows) = real_bytes*min(4096.0_wp*n_columns, 2.0_wp**21)
+   end subroutine add_output
+
+   !> The matrices of the step at hand; what a step needs is kept for the next, so the most counts.
+   subroutine add_step_memory(self, simulation, step)
+      type(memory_type), intent(inout) :: self
+      type(simulation_type), intent(in) :: simulation
+      type(step_type), intent(in) :: step
+      real(wp) :: entries, n
+
+      associate (system => simulation%scene%system)
+         n = real(n_matrices(simulation, step), wp)
+         if (system%matrices%choice%taken == solver_mumps) then
+            entries = sparse_entries(system%profile%n)
+         else
+            entries = skyline_entries(system%profile)
+            if (system%structure%is_linear .and. real(profile_entries(system%profile), wp) &
+                  <= most_kept .and. entries > real(system%profile%n, wp)) n = n + 3.0_wp
+         end if
+      end associate
+      self%items(item_matrices) = max(self%items(item_matrices), real_bytes*n*entries)
+   end subroutine add_step_memory
+
+   !> What is stored of a skyline, blocks filled up with zeros.
+   function skyline_entries(profile) result(entries)
+      type(profile_type), intent(in) :: profile
+      real(wp) :: entries
+      type(panel_layout_type) :: layout
+
+      call new_panel_layout(layout, profile%first_row, profile%coupled)
+      entries = real(layout%n_entries, wp)
+   end function skyline_entries
+
+   !> Factor of a plane mesh with two freedoms a node by nested dissection, with its work space: as
+   !> in theory proportional to n log2 n for n nodes, the factor measured.
+   pure function sparse_entries(n_equations) result(entries)
+      integer, intent(in) :: n_equations
+      real(wp) :: entries
+      real(wp) :: n_nodes
+
+      n_nodes = max(2.0_wp, real(n_equations, wp)/2.0_wp)
+      entries = 24.0_wp*n_nodes*log(n_nodes)/log(2.0_wp)
+   end function sparse_entries
+
+   !> How many effective matrices a step has in use: one at rest; in motion that of the acceleration
+   !> too; those of steps cut short by impacts, or chosen by the program, besides.
+   pure function n_matrices(simulation, step) result(n)
+      type(simulation_type), intent(in) :: simulation
+      type(step_type), intent(in) :: step
+      integer :: n
+
+      n = 2
+      if (step%procedure == procedure_static) n = 1
+      if (.not. step%direct) n = 4
+      if (step%procedure == procedure_static) return
+      if (simulation%scene%rows%n > 0 .and. &
+            simulation%scene%settings%method == method_transformation) n = 4
+   end function n_matrices
+
+   !> "memory: 120 MB (model 80, matrices 30, ...)".
+   pure function memory_text(self) result(line)
+      type(memory_type), intent(in) :: self
+      character(len=:), allocatable :: line
+      integer :: i
+
+      line = 'memory: '//megabytes(max(self%start_up, sum(self%items)))//' MB ('
+      do i = 1, n_items
+         if (i > 1) line = line//', '
+         line = line//trim(names(i))//' '//megabytes(self%items(i))
+      end do
+      line = line//'; at most '//megabytes(self%start_up)//' at the start)'
+   end function memory_text
+
+   pure function megabytes(bytes) result(text)
+      real(wp), intent(in) :: bytes
+      character(len=:), allocatable :: text
+
+      text = to_text(1.0e-6_wp*bytes, 3)
+   end function megabytes
+
+end module memory_estimate
