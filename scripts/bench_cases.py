@@ -129,7 +129,7 @@ def explicit(bench, n, plastic=False):
     name = "explicit_j2" if plastic else "explicit_q4"
     deck = write(bench.work, f"{name}.inp", explicit_block(n, plastic))
     threads = [1] if bench.threads == 1 else [1, bench.threads]
-    times = step_seconds(bench.programs, deck, threads, bench.seconds)
+    times = step_seconds(bench.programs, deck, threads, bench.seconds, bench.rounds)
     keys = {f"{name}_updates_1t": n * n / times[1], f"{name}_elements": n * n,
             f"{name}_updates_cpu_1t": n * n / times[0]}
     if bench.threads > 1:
@@ -142,8 +142,8 @@ def output_share(bench, n):
     """Part of the time that a frame every ten steps takes, explicit n by n CPE4."""
     bare = write(bench.work, "frames_none.inp", explicit_block(n))
     full = write(bench.work, "frames.inp", explicit_block(n, requests=FIELDS))
-    without = step_seconds(bench.programs, bare, [1], 0.5 * bench.seconds)
-    with_frames = step_seconds(bench.programs, full, [1], 0.5 * bench.seconds)
+    without = step_seconds(bench.programs, bare, [1], 0.5 * bench.seconds, bench.rounds)
+    with_frames = step_seconds(bench.programs, full, [1], 0.5 * bench.seconds, bench.rounds)
     return {"output_share": 1.0 - without[1] / with_frames[1]}
 
 
@@ -169,9 +169,9 @@ def block_with(bench, n, name, impact):
         (folder / file).write_text(text.replace(*impact) if impact else text)
     deck = folder / "block.inp"
     dt = step_size(deck)
-    limit = 20.0 if bench.quick else 120.0
+    limit = 6.0 if bench.quick else 120.0
     keys = {}
-    for threads in [1] if name or bench.threads == 1 else [1, bench.threads]:
+    for threads in [1] if name or bench.quick or bench.threads == 1 else [1, bench.threads]:
         rounds = []
         for _ in range(bench.rounds):
             short = bench.programs.run(deck, threads, end=repr(2 * dt))
