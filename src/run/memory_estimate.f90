@@ -7,7 +7,8 @@ module memory_estimate
    use skyline_matrix, only: profile_type, profile_entries
    use panel_layout, only: panel_layout_type, new_panel_layout
    use steps, only: step_type, procedure_static, solver_mumps
-   use surfaces, only: method_transformation
+   use surfaces, only: method_transformation, method_penalty
+   use compliance_store, only: most_entries
    use output_plan, only: plan_type, new_plan
    use scene_setup, only: simulation_type
    implicit none
@@ -16,12 +17,14 @@ module memory_estimate
    public :: memory_type, item_length, estimate_memory, add_step_memory, memory_text
 
    integer, parameter :: item_length = 24
-   integer, parameter :: n_items = 5
+   integer, parameter :: n_items = 6
    integer, parameter :: item_model = 1, item_matrices = 2, item_state = 3, item_frames = 4, &
-         item_rows = 5
+         item_rows = 5, item_contact = 6
    character(len=item_length), parameter :: names(n_items) = [character(len=item_length) :: &
-         'model', 'matrices', 'states', 'frames', 'rows']
+         'model', 'matrices', 'states', 'frames', 'rows', 'contact']
    real(wp), parameter :: real_bytes = 8.0_wp
+   !> What HDF5 takes for itself while a file is open.
+   real(wp), parameter :: library_bytes = 5.0e6_wp
    !> Values of an element or a node from which frames of stress are made.
    real(wp), parameter :: n_recovered = 14.0_wp
    !> Largest profile, in entries, whose M, C and K are kept beside the factors.
@@ -48,8 +51,30 @@ contains
       end associate
       ! d, v, a, the forces beside them, of two states and the work between them
       self%items(item_state) = real_bytes*(10.0_wp*n_freedoms + 3.0_wp*n_history)
+      self%items(item_contact) = real_bytes*contact_entries(simulation)
       call add_output(self, simulation)
    end subroutine estimate_memory
+
+   !> Motions by unit forces in contact rows: work space, and those kept for rows that stay.
+   pure function contact_entries(simulation) result(entries)
+      type(simulation_type), intent(in) :: simulation
+      real(wp) :: entries
+      real(wp), parameter :: n_shelves = 4.0_wp, n_working = 3.0_wp
+      real(wp) :: n_columns
+
+      associate (scene => simulation%scene, pairs => simulation%model%pairs)
+         entries = 0.0_wp
+         if (scene%rows%n == 0 .or. scene%settings%method == method_penalty) return
+         n_columns = real(scene%rows%n + count(scene%rows%friction > 0.0_wp), wp)
+         entries = n_columns*(real(scene%system%structure%map%n_freedoms, wp) &
+               + 2.0_wp*real(scene%rows%n, wp))
+         if (scene%system%structure%is_linear .and. all(pairs%target == 0)) then
+            entries = n_shelves*min(entries, real(most_entries, wp)) + n_working*entries
+         else
+            entries = n_working*entries
+         end if
+      end associate
+   end function contact_entries
 
    !> Frames with the snapshot and the sums they are made from, and rows of the history.
    subroutine add_output(self, simulation)
@@ -70,7 +95,7 @@ contains
          end if
          n_frames = max(1.0_wp, min(256.0_wp, 65536.0_wp/max(1.0_wp, n_nodes, n_cells)))
       end associate
-      self%items(item_frames) = real_bytes*(n_values*n_frames + n_sums &
+      self%items(item_frames) = library_bytes + real_bytes*(n_values*n_frames + n_sums &
             + 8.0_wp*real(simulation%scene%system%structure%map%n_freedoms, wp))
       n_columns = 3.0_wp*real(count(plan%node_print), wp) &
             + 6.0_wp*real(count(plan%element_print), wp)
