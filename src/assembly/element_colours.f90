@@ -87,7 +87,8 @@ contains
       do k = 2, n_colours + 1
          next(k) = next(k) + next(k - 1)
       end do
-      self%first = next
+      ! colours that no element has are left out
+      self%first = [pack(next(:n_colours), next(2:) > next(:n_colours)), next(n_colours + 1)]
       allocate (self%element(size(colour)))
       do e = 1, size(colour)
          self%element(next(colour(e))) = e

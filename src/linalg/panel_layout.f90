@@ -2,7 +2,8 @@
 !> lower triangle. A panel holds the rows from its first column on that reach one of its columns,
 !> each row with all columns of the panel, one row after the other; in a skyline such a row is also
 !> in every later panel up to its own. Equations that nothing couples stand behind the panels with
-!> one entry each, and the others are numbered without them.
+!> one entry each, and the others are numbered without them. Where the columns are short, the matrix
+!> is stored by columns instead, each from its first row to the diagonal, one after the other.
 module panel_layout
    use kinds, only: wp, int64
    implicit none
@@ -10,13 +11,15 @@ module panel_layout
 
    public :: panel_layout_type, new_panel_layout
 
+   !> Mean height of a column's entries from which there are panels.
+   real(wp), parameter :: tall = 100.0_wp
    !> Most columns of a panel.
    integer, parameter :: max_width = 32
    !> A panel has this part of its rows as columns, so that little is stored in vain.
    integer, parameter :: rows_a_column = 6
-   !> Part of the rows below a panel that count as near, and from how many it matters.
+   !> Part of the rows below a panel that count as near, and the entries from which it matters.
    real(wp), parameter :: near_part = 0.45_wp
-   integer, parameter :: worth_dividing = 100
+   integer(int64), parameter :: worth_dividing = 2000000_int64
 
    !> Rows come in runs of consecutive ones. Row i of run r in panel p, with column j, stands at
    !> at(p) + (run_place(r) + i - run_row(r))*width + j - column(p).
@@ -24,6 +27,8 @@ module panel_layout
       integer :: n = 0
       integer :: n_coupled = 0
       integer :: n_panels = 0
+      logical :: by_columns = .false.            !! without panels
+      integer, allocatable :: top(:)             !! (n) first row of each column, if by columns
       integer(int64) :: n_entries = 0            !! stored, with those that are always zero
       integer, allocatable :: number(:)          !! (n) among the coupled equations, or 0
       integer(int64), allocatable :: diagonal_at(:)   !! (n) address of the diagonal entry
@@ -48,19 +53,57 @@ module panel_layout
 contains
 
    !> The layout of a profile.
-   pure subroutine new_panel_layout(self, first_row, coupled)
+   pure subroutine new_panel_layout(self, first_row, coupled, panels_from)
       type(panel_layout_type), intent(out) :: self
       integer, intent(in) :: first_row(:)        !! (n) topmost row of each column
       logical, intent(in) :: coupled(:)          !! (n) whether it has entries off the diagonal
+      real(wp), intent(in), optional :: panels_from   !! mean height, to force one or the other
       integer, allocatable :: top(:)
+      real(wp) :: least
 
       self%n = size(first_row)
+      least = tall
+      if (present(panels_from)) least = panels_from
+      if (mean_height(first_row) < least) then
+         call place_columns(self, first_row)
+         return
+      end if
       call number_coupled(self, first_row, coupled, top)
       call choose_panels(self, top)
       call list_rows(self, top)
-      call divide_tails(self)
       call place_entries(self)
+      call divide_tails(self)
    end subroutine new_panel_layout
+
+   !> Height of the columns, as the mean of all entries.
+   pure real(wp) function mean_height(first_row)
+      integer, intent(in) :: first_row(:)
+      integer :: j
+      real(wp) :: entries, squares
+
+      entries = 0.0_wp
+      squares = 0.0_wp
+      do j = 1, size(first_row)
+         entries = entries + real(j - first_row(j) + 1, wp)
+         squares = squares + real(j - first_row(j) + 1, wp)**2
+      end do
+      mean_height = squares/max(entries, 1.0_wp)
+   end function mean_height
+
+   !> A layout without panels.
+   pure subroutine place_columns(self, first_row)
+      type(panel_layout_type), intent(inout) :: self
+      integer, intent(in) :: first_row(:)
+      integer :: j
+
+      self%by_columns = .true.
+      self%top = first_row
+      allocate (self%diagonal_at(self%n))
+      do j = 1, self%n
+         self%n_entries = self%n_entries + j - first_row(j) + 1
+         self%diagonal_at(j) = self%n_entries
+      end do
+   end subroutine place_columns
 
    !> Numbers the coupled equations; `top` is the first row of each in these numbers.
    pure subroutine number_coupled(self, first_row, coupled, top)
@@ -167,8 +210,9 @@ contains
       allocate (self%far_panel(self%n_panels), self%far_place(self%n_panels))
       panel = 0
       do p = 1, self%n_panels
-         near = self%width(p) + int(near_part*(self%n_rows(p) - self%width(p)))
-         if (self%n_rows(p) - self%width(p) < worth_dividing) near = self%n_rows(p) - 1
+         near = self%n_rows(p) - 1
+         if (self%n_entries >= worth_dividing) near = min(near, self%width(p) &
+               + int(near_part*(self%n_rows(p) - self%width(p))))
          run = self%first_run(p)
          do while (self%run_place(run + 1) <= near)
             run = run + 1
@@ -260,6 +304,10 @@ contains
          return
       end if
       address = 0
+      if (self%by_columns) then
+         if (min(i, j) >= self%top(max(i, j))) address = self%diagonal_at(max(i, j)) - abs(i - j)
+         return
+      end if
       row = self%number(max(i, j))
       column = self%number(min(i, j))
       if (row == 0 .or. column == 0) return
@@ -274,6 +322,10 @@ contains
    pure integer(int64) function bytes(self)
       class(panel_layout_type), intent(in) :: self
 
+      if (self%by_columns) then
+         bytes = (storage_size(self%top) + storage_size(self%diagonal_at))/8*int(self%n, int64)
+         return
+      end if
       bytes = (storage_size(self%number)*(size(self%number, kind=int64) + size(self%panel_of) &
             + size(self%column) + 3*size(self%source) + size(self%first_run) &
             + size(self%run_row) + size(self%run_place)) &

@@ -13,7 +13,7 @@ module panel_reduction
    public :: reduce_panels
 
    !> Products from which threads share the work.
-   real(wp), parameter :: worth_threads = 3.0e6_wp
+   real(wp), parameter :: worth_threads = 3.0e8_wp
    !> Most panels that a thread reduces together.
    integer, parameter :: most_together = 4
    !> Mean length of the runs of rows from which products go straight to their place.

@@ -16,7 +16,7 @@ module panel_solution
    !> Right-hand sides that are solved for together.
    integer, parameter :: together = 16
    !> Entries from which two threads share the work on one.
-   integer(int64), parameter :: worth_threads = 200000_int64
+   integer(int64), parameter :: worth_threads = 2000000_int64
 
    !> Panels that the threads have done: forward, then backward.
    type :: progress_type
@@ -39,7 +39,7 @@ contains
 
       y = 0.0_wp
       n_threads = 1
-      if (layout%n_entries > worth_threads) n_threads = min(2, omp_get_max_threads())
+      if (layout%n_entries >= worth_threads) n_threads = min(2, omp_get_max_threads())
       !$omp parallel num_threads(n_threads) if (n_threads > 1) private(p)
       if (omp_get_num_threads() == 1) then
          do p = 1, layout%n_panels

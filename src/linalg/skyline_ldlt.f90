@@ -3,6 +3,7 @@
 module skyline_ldlt
    use kinds, only: wp
    use skyline_matrix, only: skyline_type, diagonal
+   use column_ldlt, only: reduce_columns, solve_columns
    use panel_reduction, only: reduce_panels
    use panel_solution, only: solve_panels, solve_panels_many
    implicit none
@@ -30,6 +31,11 @@ contains
       real(wp) :: alone
       integer :: j, zero_coupled
 
+      if (matrix%layout%by_columns) then
+         call reduce_columns(matrix%layout, matrix%values, pivot_tolerance, report%zero_pivot)
+         if (report%zero_pivot == 0) report%n_negative = count(diagonal(matrix) < 0.0_wp)
+         return
+      end if
       call reduce_panels(matrix%layout, matrix%values, pivot_tolerance, pivots, zero_coupled)
       do j = 1, matrix%n
          if (matrix%layout%number(j) == 0) then
@@ -51,6 +57,10 @@ contains
       real(wp) :: x(factors%layout%n_coupled)
 
       associate (layout => factors%layout)
+         if (layout%by_columns) then
+            call solve_columns(layout, factors%values, b)
+            return
+         end if
          if (layout%n_coupled > 0) then
             x = pack(b, layout%number > 0)
             call solve_panels(layout, factors%values, x)
@@ -67,6 +77,12 @@ contains
       real(wp), allocatable :: x(:, :)
       integer :: k
 
+      if (factors%layout%by_columns) then
+         do k = 1, size(b, 2)
+            call solve_columns(factors%layout, factors%values, b(:, k))
+         end do
+         return
+      end if
       associate (layout => factors%layout)
          allocate (x(layout%n_coupled, size(b, 2)))
          do k = 1, size(b, 2)

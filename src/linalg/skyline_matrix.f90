@@ -4,6 +4,7 @@ module skyline_matrix
    use kinds, only: wp, int64
    use panel_layout, only: panel_layout_type, new_panel_layout
    use panel_kernels, only: multiply_panel
+   use column_ldlt, only: multiply_columns
    implicit none
    private
 
@@ -75,12 +76,13 @@ contains
    end subroutine fill_column
 
    !> A zero matrix of the given profile.
-   pure subroutine new_skyline(self, profile)
+   pure subroutine new_skyline(self, profile, panels_from)
       type(skyline_type), intent(out) :: self
       type(profile_type), intent(in) :: profile
+      real(wp), intent(in), optional :: panels_from   !! mean height of columns, to force a layout
 
       self%n = profile%n
-      call new_panel_layout(self%layout, profile%first_row, profile%coupled)
+      call new_panel_layout(self%layout, profile%first_row, profile%coupled, panels_from)
       allocate (self%values(self%layout%n_entries))
       self%values = 0.0_wp
    end subroutine new_skyline
@@ -197,6 +199,10 @@ contains
       real(wp), dimension(self%layout%n_coupled) :: inner_x, inner_y
       integer :: j, p
 
+      if (self%layout%by_columns) then
+         call multiply_columns(self%layout, self%values, x, y)
+         return
+      end if
       y = self%values(self%layout%diagonal_at)*x
       if (self%layout%n_coupled == 0) return
       inner_x = pack(x, self%layout%number > 0)
@@ -214,7 +220,7 @@ contains
       class(skyline_type), intent(in) :: self
       logical :: diagonal
 
-      diagonal = self%layout%n_coupled == 0
+      diagonal = self%layout%n_entries == self%n
    end function is_diagonal
 
 end module skyline_matrix
