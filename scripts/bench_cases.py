@@ -18,8 +18,8 @@ sys.path.insert(0, str(ROOT / "input" / "block"))
 # Words of the deck of the block, and those that stand for them
 HOW = "METHOD=TRANSFORMATION"
 BLOCK_IMPACTS = {
-    "": None,
-    "_anchor": (HOW, HOW + ", EVENTS=ANCHOR"),
+    "": (HOW, HOW + ", EVENTS=ANCHOR"),
+    "_substep": None,
     "_penalty": (HOW, "METHOD=PENALTY, STIFFNESS=1800"),
 }
 
@@ -149,7 +149,7 @@ def output_share(bench, n):
 
 def block(bench, n=40):
     """A step of n by n CPE8 that meet a wall: the deck of input/block, contact included, less its
-    first steps; as it is kept there, and with other ways to treat the impact."""
+    first steps; with steps of one size, as it is kept there, and with a penalty."""
     keys = {}
     for name, impact in BLOCK_IMPACTS.items():
         try:

@@ -139,7 +139,7 @@ contains
             i = size(group%lm, 1)
             allocate (k(i, i), m(i, i), c(i, i))
             do e = 1, size(group%member)
-               if (all(group%lm(:, e) == 0 .or. carried(max(1, group%lm(:, e))))) cycle
+               if (all(carried(pack(group%lm(:, e), group%lm(:, e) > 0)))) cycle
                call group%element%largest_stiffness(e, k)
                call group%element%damping(e, c)
                call group_mass(group, e, group%lumped, m)

@@ -227,7 +227,7 @@ contains
          if (step%explicit) system%structure%groups%scheme = scheme_explicit
          call begin_conditions(self, i_step, t)
          call number_anew(self)
-         call begin_matrices(system, step, count_increments(step), self%model%source, error)
+         call begin_matrices(system, step, self%model%source, error)
          if (allocated(error)) return
          call find_massless(system)
          self%scene%explicit%ready = .false.

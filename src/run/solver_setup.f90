@@ -20,10 +20,9 @@ contains
    !> Drops the matrices of the step before and chooses the solver for the work of this one: one
    !> factorization of K* and one of M if the structure is linear, else some iterations an
    !> increment; impacts are not foreseen. Error: SOLVER=MUMPS without MUMPS.
-   subroutine begin_matrices(system, step, n_increments, source, error)
+   subroutine begin_matrices(system, step, source, error)
       type(system_type), intent(inout) :: system   !! profile and conditions of the step in force
       type(step_type), intent(in) :: step
-      integer, intent(in) :: n_increments
       type(source_type), intent(in) :: source
       type(error_type), allocatable, intent(out) :: error
       type(work_type) :: work
@@ -35,8 +34,12 @@ contains
          return
       end if
       work%wanted = step%solver
-      if (step%procedure == procedure_frequency) work%wanted = solver_skyline
-      work%n_solves = real(n_increments, wp)
+      work%n_solves = 1.0_wp
+      if (step%procedure == procedure_frequency) then
+         work%wanted = solver_skyline
+      else
+         work%n_solves = max(1.0_wp, step%duration/step%dt)
+      end if
       if (.not. system%structure%is_linear) then
          work%n_solves = real(iterations, wp)*work%n_solves
          work%n_factorizations = work%n_solves
