@@ -138,6 +138,7 @@ contains
       real(wp), intent(inout) :: slots(:)
       real(wp), intent(out) :: energy(2)
       real(wp) :: u(2, self%first_node(c + 1) - self%first_node(c)), f(2, size(u, 2))
+      real(wp) :: found(2)                       !! apart from where other threads write
       integer :: i, j, before
 
       before = self%first_node(c) - 1
@@ -146,10 +147,11 @@ contains
          u(2, i) = d(self%freedom(2, before + i))
       end do
       f = 0.0_wp
-      energy = 0.0_wp
+      found = 0.0_wp
       call element%add_chunk_forces(c, &
             self%ien(:, self%first_element(c):self%first_element(c + 1) - 1), u, history, f, &
-            updated, energy)
+            updated, found)
+      energy = found
       do i = 1, size(u, 2)
          do j = 1, 2
             associate (place => self%place(j, before + i))
