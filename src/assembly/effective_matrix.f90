@@ -2,17 +2,17 @@
 !> implicit elements alone; a freedom of explicit elements only has a column of height one.
 module effective_matrix
    use kinds, only: wp
-   use mesh, only: scheme_implicit
    use skyline_matrix, only: profile_type, new_profile, couple, skyline_type, new_skyline
-   use element_groups, only: group_type, group_mass
+   use element_groups, only: group_type
    use dof_map, only: dof_map_type
+   use element_sum, only: effective_element, has_implicit_matrix
    use element_colours, only: colours_type, colour_elements
    use structure, only: structure_type, gather, group_history
    implicit none
    private
 
    public :: find_profile, assemble_effective, assemble_sum, mark_implicit
-   public :: couples_equations, equations_of, has_implicit_matrix
+   public :: couples_equations, equations_of, list_coupled
 
    !> Elements from which threads share a group.
    integer, parameter :: worth_threads = 500
@@ -59,15 +59,6 @@ contains
       end do
    end subroutine mark_implicit
 
-   !> Whether a group adds stiffness or damping to the effective matrix: it is implicit and more
-   !> than mere mass.
-   pure function has_implicit_matrix(group) result(has)
-      type(group_type), intent(in) :: group
-      logical :: has
-
-      has = group%scheme == scheme_implicit .and. any(group%element%uses(1))
-   end function has_implicit_matrix
-
    !> Whether a group fills entries of the effective matrix beside the diagonal.
    pure function couples_equations(group) result(couples)
       type(group_type), intent(in) :: group
@@ -97,6 +88,44 @@ contains
          n = n + n_behind
       end do
    end function equations_of
+
+   !> The sets of equations that constraints and elements couple: set i is
+   !> member(first(i):first(i + 1) - 1). Counted first, then listed.
+   subroutine list_coupled(structure, first, member)
+      type(structure_type), intent(in) :: structure
+      integer, allocatable, intent(out) :: first(:), member(:)
+      integer :: f, g, e, n, m, pass
+
+      associate (map => structure%map)
+         do pass = 1, 2
+            n = 0
+            m = 0
+            do f = 1, size(map%dependent)
+               call append(equations_of(map, map%dependent(f:f)))
+            end do
+            do g = 1, size(structure%groups)
+               if (.not. couples_equations(structure%groups(g))) cycle
+               do e = 1, size(structure%groups(g)%lm, 2)
+                  call append(equations_of(map, structure%groups(g)%lm(:, e)))
+               end do
+            end do
+            if (pass == 1) allocate (first(n + 1), member(m))
+         end do
+      end associate
+      first(n + 1) = m + 1
+
+   contains
+
+      subroutine append(equations)
+         integer, intent(in) :: equations(:)
+
+         n = n + 1
+         if (pass == 2) first(n) = m + 1
+         if (pass == 2) member(m + 1:m + size(equations)) = equations
+         m = m + size(equations)
+      end subroutine append
+
+   end subroutine list_coupled
 
    !> c_mass M + c_damping C + c_stiffness K, damping and tangent stiffness of implicit groups only.
    !> Without stiffness and damping, massless equations get a unit diagonal.
@@ -142,7 +171,7 @@ contains
       type(group_type), intent(in) :: group
       real(wp), intent(in) :: d(:), history(:), factors(3)
       type(skyline_type), intent(inout) :: matrix
-      real(wp), allocatable :: local(:, :), memory(:, :), total(:, :), part(:, :)
+      real(wp), allocatable :: local(:, :), memory(:, :), total(:, :)
       type(colours_type) :: colours
       integer :: k, i, n
 
@@ -157,13 +186,13 @@ contains
       else
          call colour_elements(structure%map, group%lm, colours)
       end if
-      !$omp parallel if (size(group%lm, 2) >= worth_threads) private(total, part, k)
-      allocate (total(n, n), part(n, n))
+      !$omp parallel if (size(group%lm, 2) >= worth_threads) private(total, k)
+      allocate (total(n, n))
       do k = 1, size(colours%first) - 1
          !$omp do schedule(static)
          do i = colours%first(k), colours%first(k + 1) - 1
             associate (e => colours%element(i))
-               call element_matrix(group, e, local(:, e), memory(:, e), factors, total, part)
+               call effective_element(group, e, local(:, e), memory(:, e), factors, total)
                call add_element(structure%map, matrix, group%lm(:, e), total)
             end associate
          end do
@@ -171,24 +200,6 @@ contains
       end do
       !$omp end parallel
    end subroutine add_group
-
-   !> The share of an element in the sum.
-   pure subroutine element_matrix(group, e, local, memory, factors, total, part)
-      type(group_type), intent(in) :: group
-      integer, intent(in) :: e
-      real(wp), intent(in) :: local(:), memory(:), factors(3)
-      real(wp), intent(out) :: total(:, :), part(:, :)   !! part: work space
-
-      total = 0.0_wp
-      if (.not. group%lumped) then
-         call group_mass(group, e, .false., part)
-         total = factors(1)*part
-      end if
-      if (.not. has_implicit_matrix(group)) return
-      call group%element%stiffness(e, local, memory, part)
-      total = total + factors(3)*part
-      if (size(group%damping) > 0) total = total + factors(2)*group%damping(:, :, e)
-   end subroutine element_matrix
 
    pure subroutine add_element(map, matrix, lm, values)
       type(dof_map_type), intent(in) :: map

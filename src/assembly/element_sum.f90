@@ -2,11 +2,11 @@
 module element_sum
    use kinds, only: wp
    use element_groups, only: group_type, group_mass
-   use effective_matrix, only: has_implicit_matrix
+   use mesh, only: scheme_implicit
    implicit none
    private
 
-   public :: effective_element
+   public :: effective_element, has_implicit_matrix
 
 contains
 
@@ -33,5 +33,14 @@ contains
       end if
       if (size(group%damping) > 0) total = total + factors(2)*group%damping(:, :, e)
    end subroutine effective_element
+
+   !> Whether a group adds stiffness or damping to the effective matrix: it is implicit and more
+   !> than mere mass.
+   pure function has_implicit_matrix(group) result(has)
+      type(group_type), intent(in) :: group
+      logical :: has
+
+      has = group%scheme == scheme_implicit .and. any(group%element%uses(1))
+   end function has_implicit_matrix
 
 end module element_sum

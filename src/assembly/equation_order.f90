@@ -8,7 +8,7 @@ module equation_order
    use renumbering, only: cuthill_mckee_order, sloan_order
    use dof_map, only: number_equations
    use structure, only: structure_type
-   use effective_matrix, only: find_profile, mark_implicit, couples_equations, equations_of
+   use effective_matrix, only: find_profile, mark_implicit, list_coupled
    implicit none
    private
 
@@ -97,51 +97,34 @@ contains
       call new_graph(graph, n, first, vertex(member))
    end subroutine build_node_graph
 
-   !> The sets of nodes coupled with each other: counted first, then listed.
+   !> The sets of nodes coupled with each other: those of the coupled equations, neighbours of one
+   !> node taken once.
    subroutine list_cliques(structure, first, member)
       type(structure_type), intent(in) :: structure
       integer, allocatable, intent(out) :: first(:), member(:)
-      integer :: node_of(structure%map%n_eq), f, g, e, n, m, pass
+      integer :: node_of(structure%map%n_eq), f, i, k, n, from, last_node
 
       associate (map => structure%map)
          do f = 1, map%n_freedoms
             if (map%id(map%dof(f), map%node(f)) > 0) node_of(map%id(map%dof(f), map%node(f))) &
                   = map%node(f)
          end do
-         do pass = 1, 2
-            n = 0
-            m = 0
-            do f = 1, size(map%dependent)
-               call append(equations_of(map, map%dependent(f:f)))
-            end do
-            do g = 1, size(structure%groups)
-               if (.not. couples_equations(structure%groups(g))) cycle
-               do e = 1, size(structure%groups(g)%lm, 2)
-                  call append(equations_of(map, structure%groups(g)%lm(:, e)))
-               end do
-            end do
-            if (pass == 1) allocate (first(n + 1), member(m))
-         end do
-         first(n + 1) = m + 1
       end associate
-
-   contains
-
-      subroutine append(equations)
-         integer, intent(in) :: equations(:)
-         integer :: i, last_node
-
-         n = n + 1
-         if (pass == 2) first(n) = m + 1
+      call list_coupled(structure, first, member)
+      n = 0
+      do i = 1, size(first) - 1
+         from = first(i)
+         first(i) = n + 1
          last_node = 0
-         do i = 1, size(equations)
-            if (node_of(equations(i)) == last_node) cycle
-            last_node = node_of(equations(i))
-            m = m + 1
-            if (pass == 2) member(m) = last_node
+         do k = from, first(i + 1) - 1
+            if (node_of(member(k)) == last_node) cycle
+            last_node = node_of(member(k))
+            n = n + 1
+            member(n) = last_node
          end do
-      end subroutine append
-
+      end do
+      first(size(first)) = n + 1
+      member = member(:n)
    end subroutine list_cliques
 
    !> The nodes of the graph in an order of its vertices, then all others as they are.

@@ -6,7 +6,7 @@ module sparse_effective
    use element_groups, only: group_type
    use dof_map, only: dof_map_type
    use structure, only: structure_type, gather, group_history
-   use effective_matrix, only: couples_equations, equations_of
+   use effective_matrix, only: couples_equations, list_coupled
    use element_sum, only: effective_element
    implicit none
    private
@@ -20,52 +20,10 @@ contains
       type(structure_type), intent(in) :: structure
       type(pattern_type), intent(out) :: pattern
       integer, allocatable :: first(:), member(:)
-      integer :: n, m, pass
 
-      do pass = 1, 2
-         n = 0
-         m = 0
-         call list_sets(structure, n, m, first, member)
-         if (pass == 1) allocate (first(n + 1), member(m))
-      end do
-      first(n + 1) = m + 1
+      call list_coupled(structure, first, member)
       call new_pattern(pattern, structure%map%n_eq, first, member)
    end subroutine find_pattern
-
-   !> Counts the sets of coupled equations and their members; lists them where there is room.
-   subroutine list_sets(structure, n, m, first, member)
-      type(structure_type), intent(in) :: structure
-      integer, intent(inout) :: n                !! sets
-      integer, intent(inout) :: m                !! members of all
-      integer, allocatable, intent(inout) :: first(:), member(:)
-      integer :: f, g, e
-
-      associate (map => structure%map)
-         do f = 1, size(map%dependent)
-            call append(equations_of(map, map%dependent(f:f)))
-         end do
-         do g = 1, size(structure%groups)
-            if (.not. couples_equations(structure%groups(g))) cycle
-            do e = 1, size(structure%groups(g)%lm, 2)
-               call append(equations_of(map, structure%groups(g)%lm(:, e)))
-            end do
-         end do
-      end associate
-
-   contains
-
-      subroutine append(equations)
-         integer, intent(in) :: equations(:)
-
-         if (allocated(member)) then
-            first(n + 1) = m + 1
-            member(m + 1:m + size(equations)) = equations
-         end if
-         n = n + 1
-         m = m + size(equations)
-      end subroutine append
-
-   end subroutine list_sets
 
    !> c_mass M + c_damping C + c_stiffness K, damping and tangent stiffness of implicit groups only.
    pure subroutine assemble_sparse(structure, pattern, d, history, factors, values)

@@ -20,7 +20,7 @@ module effective_system
    implicit none
    private
 
-   public :: effective_system_type, new_effective_system
+   public :: effective_system_type, new_effective_system, most_kept
 
    integer, parameter :: n_slots = 4
    !> Largest profile, in entries, whose M, C and K are kept beside the factors.

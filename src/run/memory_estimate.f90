@@ -8,6 +8,7 @@ module memory_estimate
    use panel_layout, only: panel_layout_type, new_panel_layout
    use steps, only: step_type, procedure_static, solver_mumps
    use surfaces, only: method_transformation, method_penalty
+   use effective_system, only: most_kept
    use compliance_store, only: most_entries
    use output_plan, only: plan_type, new_plan
    use scene_setup, only: simulation_type
@@ -27,8 +28,6 @@ module memory_estimate
    real(wp), parameter :: library_bytes = 5.0e6_wp
    !> Values of an element or a node from which frames of stress are made.
    real(wp), parameter :: n_recovered = 14.0_wp
-   !> Largest profile, in entries, whose M, C and K are kept beside the factors.
-   real(wp), parameter :: most_kept = 2.0e7_wp
 
    !> What is held while increments are taken, and the most that building the model took.
    type :: memory_type
@@ -115,8 +114,8 @@ contains
             entries = sparse_entries(system%profile%n)
          else
             entries = skyline_entries(system%profile)
-            if (system%structure%is_linear .and. real(profile_entries(system%profile), wp) &
-                  <= most_kept .and. entries > real(system%profile%n, wp)) n = n + 3.0_wp
+            if (system%structure%is_linear .and. profile_entries(system%profile) <= most_kept &
+                  .and. entries > real(system%profile%n, wp)) n = n + 3.0_wp
          end if
       end associate
       self%items(item_matrices) = max(self%items(item_matrices), real_bytes*n*entries)

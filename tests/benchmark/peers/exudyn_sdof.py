@@ -40,14 +40,4 @@ def run(stiffness):
     return seconds, peer.oscillator_error(stored[:, 0], stored[:, 1])
 
 
-def main():
-    given = peer.arguments()
-    peer.version('exudyn')
-    trials = [1e6] if given.quick else [2.5e5, 1e6, 4e6]
-    seconds, error = min(map(run, trials), key=lambda pair: pair[1])
-    peer.figure('seconds', seconds)
-    peer.figure('error', error)
-    peer.figure('steps', STEPS)
-
-
-main()
+peer.penalty_oscillator('exudyn', run, STEPS)

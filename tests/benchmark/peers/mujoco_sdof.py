@@ -27,14 +27,4 @@ def run(stiffness):
     return watch(), peer.oscillator_error(np.linspace(0, END, SAMPLES + 1), d)
 
 
-def main():
-    given = peer.arguments()
-    peer.version('mujoco')
-    trials = [1e6] if given.quick else [2.5e5, 1e6, 4e6]
-    seconds, error = min(map(run, trials), key=lambda pair: pair[1])
-    peer.figure('seconds', seconds)
-    peer.figure('error', error)
-    peer.figure('steps', STEPS)
-
-
-main()
+peer.penalty_oscillator('mujoco', run, STEPS)
