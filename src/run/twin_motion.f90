@@ -54,7 +54,7 @@ contains
       type(twin_settings_type), intent(in) :: settings
 
       self%settings = settings
-      self%scale = settings%scale
+      self%scale = max(settings%scale, maxval(abs(simulation%motion%motion%d)))
       self%t_start = simulation%motion%motion%t
       call start_ladder(self%ladder, settings%dt, settings%limits)
       call find_breaks(simulation, self%t_start + [0.0_wp, settings%duration], self%breaks)
