@@ -11,6 +11,7 @@ module run_report
    use surfaces, only: beta_given, contact_pair_type, rigid_plane, method_fictitious_force, &
          method_penalty, method_lagrange
    use transformation, only: impact_beta
+   use stability_limit, only: stable_frequency
    use impact_scene, only: event_impact, event_capture, event_release, event_contact, event_limit, &
          scene_type
    use automatic_groups, only: partition_type
@@ -131,9 +132,15 @@ contains
          call say(log, line)
          if (n_explicit > 0) call say(log, '  '//plural(n_explicit, 'explicit element') &
                //', critical step '//to_text(simulation%critical(scheme_explicit)%step))
-         if (simulation%critical(scheme_implicit)%omega > 0.0_wp) call say(log, &
-               '  highest implicit frequency at most ' &
-               //to_text(simulation%critical(scheme_implicit)%omega)//' rad/time')
+         associate (omega => simulation%critical(scheme_implicit)%omega, &
+               limit => stable_frequency(system%newmark))
+            if (omega > 0.0_wp) then
+               line = '  highest implicit frequency at most '//to_text(omega)//' rad/time'
+               if (limit < huge(limit)) line = line//', stable up to a step of ' &
+                     //to_text(limit/omega)
+               call say(log, line)
+            end if
+         end associate
       end associate
       call report_impact(simulation, log)
    end subroutine report_dynamics
