@@ -111,20 +111,28 @@ def contents(sections):
     return "<nav><h2>Contents</h2><ul>" + "\n".join(items) + "</ul></nav>"
 
 
-def summary(sections):
-    """All claims in one table, and how many of the source's hold."""
-    rows, kinds, counts = [], [], dict.fromkeys(CLASSES, 0)
+def summary_table(sections, outcome):
+    """The claims that ended in one way."""
+    rows = []
     for section in sections:
+        link = f'<a href="#{section.anchor}">{escape(section.title.partition(":")[0])}</a>'
         for verdict in section.verdicts:
-            if not verdict.ours:
-                counts[verdict.outcome] += 1
-            link = f'<a href="#{section.anchor}">{escape(section.title)}</a>'
-            cells = [("carom: " if verdict.ours else "") + verdict.claim, verdict.measured,
-                     f"{SIGNS[verdict.outcome]} {verdict.outcome}"]
-            kind = CLASSES[verdict.outcome]
-            rows.append(f'<tr class="{kind}"><td>{link}</td>'
-                        + "".join(f"<td>{escape(cell)}</td>" for cell in cells) + "</tr>")
-            kinds.append(kind)
+            if verdict.outcome == outcome:
+                cells = [("carom: " if verdict.ours else "") + verdict.claim, verdict.measured,
+                         verdict.limit]
+                rows.append(f'<tr class="{CLASSES[outcome]}"><td>{link}</td>'
+                            + "".join(f"<td>{escape(cell)}</td>" for cell in cells) + "</tr>")
+    if not rows:
+        return ""
+    head = "<tr><th>where</th><th>claim</th><th>measured</th><th>limit</th></tr>"
+    heading = f"<h3>{SIGNS[outcome]} {escape(outcome)}</h3>"
+    return "\n".join([heading, '<div class="wide"><table>', head, *rows, "</table></div>"])
+
+
+def summary(sections):
+    """All claims, those that do not hold first, and how many of the source's hold."""
+    counts = {outcome: sum(v.outcome == outcome and not v.ours for s in sections for v in s.verdicts)
+              for outcome in CLASSES}
     said = ", ".join(f"{number} {'hold' if what == HOLDS else what.replace('does', 'do')}"
                      for what, number in counts.items())
     failed = [section.title for section in sections if section.failure]
@@ -132,8 +140,8 @@ def summary(sections):
              "Those that begin with “carom:” are claims of this program.</p>"]
     if failed:
         lines.append(f'<p class="broken">Failed parts: {escape("; ".join(failed))}</p>')
-    head = "<tr><th>where</th><th>claim</th><th>measured</th><th>verdict</th></tr>"
-    return "\n".join([*lines, '<div class="wide"><table>', head, *rows, "</table></div>"])
+    tables = [summary_table(sections, outcome) for outcome in (FAILS, OPEN, HOLDS)]
+    return "\n".join([*lines, *tables])
 
 
 def page(title, lead, sections):
