@@ -11,6 +11,7 @@ module equation_of_motion
    use prescribed_motion, only: motion_set_type, impose_motion
    use motion_state, only: state_type, newmark_type, predict
    use effective_system, only: effective_system_type
+   use gauss_matrices, only: gauss_matrices_type
    implicit none
    private
 
@@ -28,6 +29,7 @@ module equation_of_motion
       type(newmark_type) :: newmark
       type(profile_type) :: profile
       type(effective_system_type) :: matrices
+      type(gauss_matrices_type) :: gauss         !! those of steps of fourth order
       logical :: static = .false.
       real(wp) :: tolerance = 1.0e-10_wp         !! of the Newton iteration, relative
       integer :: max_iterations = 50
