@@ -2,7 +2,7 @@
 !> gap, with which normal. Rows against planes, of gap elements and of pairs with SMALL SLIDING stay
 !> as they are in the undeformed configuration.
 module contact_geometry
-   use kinds, only: wp
+   use kinds, only: wp, int64
    use model, only: model_type
    use surfaces, only: rigid_surface_type
    use histories, only: amplitude_type
@@ -39,6 +39,7 @@ module contact_geometry
    !> All surfaces, with what the search needs.
    type :: contact_geometry_type
       logical :: moving = .false.                !! some rows are not frozen
+      integer(int64) :: n_searches = 0           !! how often they have been placed
       real(wp) :: size = 0.0_wp                  !! largest extent of the nodes
       type(contact_row_type), allocatable :: rows(:)
       type(pass_type), allocatable :: passes(:)
@@ -156,6 +157,7 @@ contains
       type(positions_type) :: positions
       integer :: i, k
 
+      self%n_searches = self%n_searches + 1
       positions%t = t
       positions%reach = reach
       ! a row whose gap counts as none may be as far away as that
