@@ -14,6 +14,7 @@ module equation_of_motion
    use prescribed_motion, only: motion_set_type, impose_motion
    use motion_state, only: state_type, newmark_type, predict, hold
    use effective_system, only: effective_system_type
+   use gauss_matrices, only: gauss_matrices_type
    implicit none
    private
 
@@ -31,6 +32,7 @@ module equation_of_motion
       type(newmark_type) :: newmark
       type(profile_type) :: profile
       type(effective_system_type) :: matrices
+      type(gauss_matrices_type) :: gauss         !! those of steps of fourth order
       type(cost_type) :: cost
       logical :: static = .false.
       real(wp) :: tolerance = 1.0e-10_wp         !! of the Newton iteration, relative

@@ -25,6 +25,7 @@ module scene_setup
    use increment_count, only: count_increments
    use automatic_groups, only: partition_type, resolve_automatic
    use impact_factory, only: make_impact_method, check_method, check_anchor
+   use order_check, only: check_order
    implicit none
    private
 
@@ -244,6 +245,8 @@ contains
          call check_frequencies(self, step, error)
          if (allocated(error)) return
          call check_method(self%model, self%scene%settings, step, system%newmark%beta, error)
+         if (allocated(error)) return
+         call check_order(self%model, self%scene, step, error)
          if (allocated(error)) return
          call check_anchor(self%model, self%scene, step, error)
       end associate
