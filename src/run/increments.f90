@@ -4,6 +4,7 @@ module increments
    use kinds, only: wp
    use errors, only: error_type, new_error, status_numerical
    use text, only: to_text
+   use cost_account, only: enter, leave, phase_contact, phase_other
    use steps, only: step_type
    use energy_ledger, only: ledger_type
    use constraint_rows, only: rows_type
@@ -80,19 +81,31 @@ contains
       type(simulation_type), intent(inout) :: simulation
       real(wp), intent(in) :: dt
       type(error_type), allocatable, intent(out) :: error
-      type(contact_motion_type) :: next
+      integer :: outer
 
       simulation%scene%impulse = 0.0_wp
       simulation%scene%dt = dt
-      if (.not. simulation%scene%system%static) then
+      call enter(simulation%scene%system%cost, merge(phase_contact, phase_other, &
+            simulation%scene%rows%n > 0), outer)
+      if (simulation%scene%system%static) then
+         call take_static_increment(simulation, dt, error)
+      else
          call simulation%method%advance(simulation%scene, simulation%motion, dt, error)
-         return
       end if
+      call leave(simulation%scene%system%cost, outer)
+   end subroutine take_increment
+
+   subroutine take_static_increment(simulation, dt, error)
+      type(simulation_type), intent(inout) :: simulation
+      real(wp), intent(in) :: dt
+      type(error_type), allocatable, intent(out) :: error
+      type(contact_motion_type) :: next
+
       call solve_statically(simulation%scene, simulation%motion, dt, next, error)
       if (allocated(error)) return
       call accept_span(simulation%scene, simulation%motion, next)
       simulation%motion = next
-   end subroutine take_increment
+   end subroutine take_static_increment
 
    !> One accepted static increment of at most `remaining`: tried, cut back where it does not
    !> converge, and the size of the next one chosen.

@@ -4,6 +4,8 @@ module simulation
    use errors, only: error_type, new_error, status_numerical
    use text, only: to_text
    use clock, only: seconds_now
+   use cost_account, only: cost_type, start_clock, enter, leave, next_increment, end_increments, &
+         phase_read, phase_build, phase_output
    use steps, only: step_type, procedure_frequency
    use energy_ledger, only: close_increment
    use effective_matrix, only: mark_implicit
@@ -94,24 +96,30 @@ contains
       type(simulation_type) :: simulation
       type(output_type) :: output
       type(error_type), allocatable :: close_error
-      real(wp) :: started
+      integer :: outer
 
-      started = seconds_now()
-      output%last_flush = started
-      call read_deck(simulation%model, command%deck, command%definitions, error)
-      if (allocated(error)) return
-      call prepare(simulation, output%log, .false., error)
-      if (allocated(error)) return
-      output%end_time = simulation%motion%motion%t
-      call rebuild(simulation, error)
+      associate (cost => simulation%scene%system%cost)
+         call start_clock(cost)
+         output%last_flush = seconds_now()
+         call enter(cost, phase_read, outer)
+         call read_deck(simulation%model, command%deck, command%definitions, error)
+         call leave(cost, outer)
+         if (allocated(error)) return
+         call enter(cost, phase_build, outer)
+         call prepare(simulation, output%log, .false., error)
+         if (allocated(error)) return
+         output%end_time = simulation%motion%motion%t
+         call rebuild(simulation, error)
+         call leave(cost, outer)
+      end associate
       if (allocated(error)) return
       call open_log(output%log, stem_of(command%output), command%quiet, error)
       if (allocated(error)) return
       call run_steps(simulation, command, output, error)
       call end_progress(output%progress)
-      call close_results(output%results, close_error)
+      call close_results(output%results, simulation%scene, close_error)
       if (.not. allocated(error) .and. allocated(close_error)) call move_alloc(close_error, error)
-      call report_summary(simulation, seconds_now() - started, output%log)
+      call report_summary(simulation, output%log)
       call report_end(output%log, error)
       call close_log(output%log)
    end subroutine run_deck
@@ -157,12 +165,14 @@ contains
       type(command_type), intent(in) :: command
       type(output_type), intent(inout) :: output
       type(error_type), allocatable, intent(out) :: error
-      integer :: i
+      integer :: i, outer
 
       call report_model(simulation, output%log)
       call report_notes(simulation, output%log)
+      call enter(simulation%scene%system%cost, phase_output, outer, .true.)
       call open_results(output%results, command%output, simulation%model, simulation%scene, &
             simulation%contact, error)
+      call leave(simulation%scene%system%cost, outer)
       if (allocated(error)) return
       call start_progress(output%progress, command%quiet)
       do i = 1, size(simulation%model%steps)
@@ -180,8 +190,11 @@ contains
       integer, intent(in) :: i_step
       type(output_type), intent(inout) :: output
       type(error_type), allocatable, intent(out) :: error
+      integer :: outer
 
+      call enter(simulation%scene%system%cost, phase_build, outer)
       call start_step(simulation, i_step, error)
+      call leave(simulation%scene%system%cost, outer)
       if (allocated(error)) return
       call report_step(simulation, i_step, output%log)
       if (i_step == 1) call record_start(simulation, output, error)
@@ -193,6 +206,7 @@ contains
       else
          call run_to_tolerance(simulation, i_step, output, error)
       end if
+      call end_increments(simulation%scene%system%cost)
    end subroutine run_step
 
    !> The system of equations and the initial state.
@@ -201,14 +215,18 @@ contains
       type(output_type), intent(inout) :: output
       type(error_type), allocatable, intent(out) :: error
       logical, allocatable :: implicit_equation(:)
+      integer :: outer
 
+      call enter(simulation%scene%system%cost, phase_output, outer, .true.)
       call mark_implicit(simulation%scene%system%structure, implicit_equation)
       call write_system(output%results, simulation%scene, version_text, implicit_equation, error)
+      call leave(simulation%scene%system%cost, outer)
       if (allocated(error)) return
       call record_increment(output%results, simulation%scene, simulation%contact, &
             simulation%motion, simulation%model%steps(1)%requests, 0, .false., error)
       if (allocated(error)) return
-      if (seconds_now() - output%last_flush > quick_start) call flush_now(output, error)
+      if (seconds_now() - output%last_flush > quick_start) call flush_now(output, &
+            simulation%scene%system%cost, error)
    end subroutine record_start
 
    !> Increments of one size, the last one shorter where they do not fill the step.
@@ -339,8 +357,9 @@ contains
          end if
          output%iterations = scene%n_iterations
          call show_progress(output%progress, motion%motion%t/output%end_time, motion%motion%t)
-         call flush_now_and_then(output, error)
+         call flush_now_and_then(output, scene%system%cost, error)
          if (allocated(error)) return
+         call next_increment(scene%system%cost)
          call check_balance(scene%ledger, step, motion%motion%t, error)
       end associate
    end subroutine finish_increment
@@ -375,18 +394,24 @@ contains
    end subroutine note_residuals
 
    !> Keeps the file complete up to a few seconds ago.
-   subroutine flush_now_and_then(output, error)
+   subroutine flush_now_and_then(output, cost, error)
       type(output_type), intent(inout) :: output
+      type(cost_type), intent(inout) :: cost
       type(error_type), allocatable, intent(out) :: error
 
-      if (seconds_now() - output%last_flush >= flush_interval) call flush_now(output, error)
+      if (seconds_now() - output%last_flush >= flush_interval) call flush_now(output, cost, &
+            error)
    end subroutine flush_now_and_then
 
-   subroutine flush_now(output, error)
+   subroutine flush_now(output, cost, error)
       type(output_type), intent(inout) :: output
+      type(cost_type), intent(inout) :: cost
       type(error_type), allocatable, intent(out) :: error
+      integer :: outer
 
+      call enter(cost, phase_output, outer, .true.)
       call flush_results(output%results, error)
+      call leave(cost, outer)
       output%last_flush = seconds_now()
    end subroutine flush_now
 
