@@ -46,6 +46,7 @@ module rehearsal
    real(wp), parameter :: explicit_share = 0.45_wp     !! of the critical step: the coarse one is double
    integer, parameter :: most_rehearsals = 10
    real(wp), parameter :: aim = 0.6_wp                 !! estimate aimed at, of what is asked
+   real(wp), parameter :: enough = 0.25_wp             !! an estimate from here on needs no change
    real(wp), parameter :: nothing = 1.0e-13_wp         !! errors below mean nothing
    real(wp), parameter :: round_off = 1.0e-10_wp       !! errors below may be that of impact times
    !> A size this near is foretold by one rehearsal, one farther off by two, which show the order.
@@ -161,12 +162,13 @@ contains
       if (self%base%n == 0 .and. trial%difference <= large_error) self%base = trial
       self%size = trial%size
       self%ready = estimate <= max(nothing, min(round_off, 0.1_wp*self%asked)) .or. forced .or. self%n_rehearsals >= most_rehearsals
+      self%ready = self%ready .or. (estimate <= self%asked .and. estimate >= enough*self%asked)
       if (self%ready) return
       target = trial%size*(aim*self%asked/estimate)**(1.0_wp/self%order)
       if (.not. self%given) target = max(target, default_least)
       self%size = target
       self%ready = (trusted .or. (target >= near*trial%size .and. estimate < large_error)) .and. &
-            target >= trial%size/4.0_wp .and. target <= 2.0_wp*trial%size
+            target >= trial%size/4.0_wp .and. target <= 1.5_wp*trial%size
       if (self%ready) return
       if (target < trial%size) self%size = max(min(2.5_wp*target, trial%size/1.5_wp), &
             trial%size/4.0_wp)
