@@ -8,7 +8,7 @@
 !>
 !> f joins the loads at both Gauss points. It conserves the energy of every free motion, whatever h.
 module gauss_step
-   use kinds, only: wp
+   use kinds, only: wp, int64
    use errors, only: error_type
    use mesh, only: scheme_implicit
    use dof_map, only: reduce, expand, follow_constraints
@@ -16,8 +16,9 @@ module gauss_step
    use external_load, only: load_at
    use prescribed_motion, only: impose_motion
    use motion_state, only: state_type
-   use equation_of_motion, only: system_type, impose
+   use equation_of_motion, only: system_type, impose, count_updates
    use gauss_matrices, only: prepare_gauss, solve_gauss
+   use cost_account, only: enter, leave, charge, phase_elements, phase_factor, phase_solve
    use reactions, only: reaction_forces
    implicit none
    private
@@ -96,20 +97,46 @@ contains
       type(error_type), allocatable, intent(out) :: error
       complex(wp), dimension(size(a)) :: v, d, force
       complex(wp) :: s
-      integer :: i
+      integer :: i, outer
 
       s = rate/dt
       v = start%v + a/s
       d = start%d + v/s
+      call enter(system%cost, phase_elements, outer)
       force = -resistance(system, start%history, d, v, a)
+      ! real and imaginary part
+      call count_updates(system, scheme_implicit)
+      call count_updates(system, scheme_implicit)
+      call leave(system%cost, outer)
       do i = 1, 2
          force = force + joint(i)*load_at(system%loads, size(a), start%t + point(i)*dt)
       end do
-      call prepare_gauss(system%gauss, system%matrices, system%structure, system%profile, s, dt, &
-            whole, error)
+      call prepare(system, s, dt, whole, error)
       if (allocated(error)) return
       a = a + solve_complex(system, force)
    end subroutine free_acceleration
+
+   !> Makes the matrix of a step size ready; books what that takes.
+   subroutine prepare(system, s, dt, whole, error)
+      type(system_type), intent(inout) :: system
+      complex(wp), intent(in) :: s
+      real(wp), intent(in) :: dt
+      logical, intent(in) :: whole
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: seconds
+      integer(int64) :: n_assembled
+      integer :: outer
+
+      call enter(system%cost, phase_elements, outer)
+      seconds = system%matrices%factor_seconds
+      n_assembled = system%matrices%n_assembled
+      call prepare_gauss(system%gauss, system%matrices, system%structure, system%profile, s, dt, &
+            whole, error)
+      call charge(system%cost, phase_factor, system%matrices%factor_seconds - seconds)
+      system%cost%element_updates = system%cost%element_updates + system%matrices%n_assembled &
+            - n_assembled
+      call leave(system%cost, outer)
+   end subroutine prepare
 
    !> K d + C v + M a.
    function resistance(system, history, d, v, a) result(force)
@@ -139,10 +166,13 @@ contains
       complex(wp), intent(in) :: force(:)        !! (n_freedoms)
       complex(wp) :: a(size(force))
       complex(wp) :: b(system%structure%map%n_eq)
+      integer :: outer
 
       b = cmplx(reduce(system%structure%map, real(force, wp)), &
             reduce(system%structure%map, aimag(force)), wp)
+      call enter(system%cost, phase_solve, outer)
       call solve_gauss(system%gauss, system%matrices, b)
+      call leave(system%cost, outer)
       a = cmplx(expand(system%structure%map, real(b, wp)), &
             expand(system%structure%map, aimag(b)), wp)
    end function solve_complex
@@ -196,7 +226,7 @@ contains
    !> Works over the step: of loads and of what moves prescribed freedoms, and of damping. The sums
    !> over the Gauss points balance the energies at the ends exactly.
    subroutine span_works(system, start, dt, a, contact, works)
-      type(system_type), intent(in) :: system
+      type(system_type), intent(inout) :: system
       type(state_type), intent(in) :: start
       real(wp), intent(in) :: dt
       complex(wp), intent(in) :: a(:)            !! (n_freedoms)
