@@ -7,7 +7,7 @@ module gauss_matrices
    use skyline_matrix, only: profile_type, skyline_type, profile_entries
    use complex_skyline, only: complex_skyline_type, new_complex_skyline, column_values
    use structure, only: structure_type
-   use effective_matrix, only: assemble_sum
+   use effective_matrix, only: assemble_sum, count_coupled
    use effective_system, only: effective_system_type, name_singular
    implicit none
    private
@@ -62,7 +62,10 @@ contains
       end do
       self%current = 1
       if (.not. whole) self%current = 1 + minloc(self%slots(2:)%last_use, dim=1)
-      if (.not. allocated(self%parts)) call assemble_parts(self, structure, profile)
+      if (.not. allocated(self%parts)) then
+         call assemble_parts(self, structure, profile)
+         matrices%n_assembled = matrices%n_assembled + 3*count_coupled(structure)
+      end if
       started = seconds_now()
       associate (slot => self%slots(self%current))
          slot%dt = -1.0_wp
@@ -111,12 +114,9 @@ contains
       type(gauss_matrices_type), intent(in) :: self
       type(effective_system_type), intent(inout) :: matrices   !! counts
       complex(wp), intent(inout), contiguous :: b(:)           !! (n_eq)
-      real(wp) :: started
 
-      started = seconds_now()
       call self%slots(self%current)%matrix%solve(b)
       matrices%n_solves = matrices%n_solves + real_operations
-      matrices%solve_seconds = matrices%solve_seconds + seconds_now() - started
    end subroutine solve_gauss
 
 end module gauss_matrices
