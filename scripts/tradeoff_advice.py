@@ -5,15 +5,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-LEAST_ORDER = 0.3         # below, an error does not go down with the step
+LEAST_ORDER = 0.5         # below, an error does not go down with the step
 FEWEST = 3                # points that a fit needs
 LARGEST = 0.5             # beyond it an error says nothing but that all is wrong
-# Ways in which points lie on a line: rms of log10(error) about it, least slope, and whether the line
-# must go down to the finest step
-CLEAN, SCATTERED = (0.08, LEAST_ORDER, False), (0.25, 0.5, True)
+# Ways in which points lie on a line: rms of log10(error) about it, and whether the line must go down
+# to the finest step
+CLEAN, SCATTERED = (0.08, False), (0.25, True)
 FLAT = 1.3                # largest over smallest error of steps that make no difference
 ROUND_OFF = 1e-11         # errors as small as this are none
-SAME_FLOOR = 0.3          # a part of the last error on the line that finer steps must fall below
 
 
 @dataclass
@@ -90,38 +89,48 @@ def fit_series(rows, error, cost):
         return Fit(verdict=f"no convergence (errors above {LARGEST})") if wrong else Fit()
     x = np.log10([step_of(r) for r in small])
     y = np.log10([r.errors[error] for r in small])
-    window = best_window(x, y, *CLEAN) or best_window(x, y, *SCATTERED)
+    flat = flat_tail(y)
+    part = slice(0, len(y) - flat)
+    window = asymptotic_part(x[part], y[part])
+    floor = float(np.median(10.0 ** y[-flat:])) if flat else None
     if window is None:
-        return without_order(x, y)
+        order, deviation, _ = line(x, y)
+        return Fit(order, deviation, verdict=f"levels off at {floor:.1e}" if flat
+                   else f"no convergence (slope {order:.2f})")
     first, last, order, deviation = window
-    chosen, after = small[first:last], 10.0 ** y[last:]
-    floor = None
-    if last < len(small):
-        end = 10.0 ** y[last - 1]
-        if after.max() > 1.5 * end > 1.5 * ROUND_OFF * 1e3:
-            return Fit(order, deviation, verdict="no convergence (errors grow again)")
-        if after.min() > SAME_FLOOR * end or len(after) > 1:
-            floor = float(np.median(after))
-    return Fit(order, deviation, cost_slope(chosen, error, cost), chosen, "", floor)
+    end, after = 10.0 ** y[last - 1], 10.0 ** y[last:]
+    if len(after) and after.max() > 1.5 * end > 1e3 * ROUND_OFF:
+        return Fit(order, deviation, verdict="no convergence (errors grow again)")
+    if len(after) and floor is None:
+        floor = float(np.median(after))
+    return Fit(order, deviation, cost_slope(small[first:last], error, cost), small[first:last], "",
+               floor)
 
 
-def without_order(x, y):
-    """What is to be said of points on no falling line."""
-    order, deviation, _ = line(x, y)
-    level = 10.0 ** y[len(y) // 2 :]
-    if level.max() <= FLAT * level.min():
-        return Fit(order, deviation, verdict=f"levels off at {level[-1]:.1e}")
-    return Fit(order, deviation, verdict=f"no convergence (slope {order:.2f})")
+def asymptotic_part(x, y):
+    """Where the points are on a line, as `best_window` has it: a clean one unless one twice as long
+    goes through scattered points."""
+    clean, scattered = best_window(x, y, *CLEAN), best_window(x, y, *SCATTERED)
+    if clean and scattered:
+        lengths = [x[window[0]] - x[window[1] - 1] for window in (clean, scattered)]
+        return clean if lengths[0] > 0.5 * lengths[1] else scattered
+    return clean or scattered
 
 
-def best_window(x, y, scatter, least, to_the_end):
+def flat_tail(y):
+    """How many of the finest points are at one level; 0 if that is less than a fit needs."""
+    n = max((n for n in range(1, len(y) + 1) if np.ptp(y[-n:]) <= math.log10(FLAT)), default=0)
+    return n if n >= FEWEST else 0
+
+
+def best_window(x, y, scatter, to_the_end):
     """The longest row of points on a falling line: first, last + 1, slope, its standard error."""
     best, most = None, 0.0
     for first in range(len(x) - FEWEST + 1):
         for last in range(first + FEWEST, len(x) + 1):
             slope, deviation, rms = line(x[first:last], y[first:last])
             length = x[first] - x[last - 1]
-            sure = slope >= least and slope > 3.0 * deviation and rms <= scatter
+            sure = slope >= LEAST_ORDER and slope > 3.0 * deviation and rms <= scatter
             sure = sure and (last == len(x) or not to_the_end)
             if sure and length > most + 1e-9 and length >= 0.34 * (x[0] - x[-1]):
                 best, most = (first, last, slope, deviation), length
