@@ -5,12 +5,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-LEAST_ORDER = 0.5         # below, an error does not go down with the step
 FEWEST = 3                # points that a fit needs
 LARGEST = 0.5             # beyond it an error says nothing but that all is wrong
-# Ways in which points lie on a line: rms of log10(error) about it, and whether the line must go down
-# to the finest step
-CLEAN, SCATTERED = (0.08, False), (0.25, True)
+# Ways in which points lie on a line: rms of log10(error) about it, least slope (below, an error does
+# not go down with the step), and whether the line must go down to the finest step
+CLEAN, SCATTERED = (0.08, 0.5, False), (0.25, 0.7, True)
 FLAT = 1.3                # largest over smallest error of steps that make no difference
 ROUND_OFF = 1e-11         # errors as small as this are none
 
@@ -99,9 +98,12 @@ def fit_series(rows, error, cost):
                    else f"no convergence (slope {order:.2f})")
     first, last, order, deviation = window
     end, after = 10.0 ** y[last - 1], 10.0 ** y[last:]
-    if len(after) and after.max() > 1.5 * end > 1e3 * ROUND_OFF:
-        return Fit(order, deviation, verdict="no convergence (errors grow again)")
-    if len(after) and floor is None:
+    if len(after) and end > 1e3 * ROUND_OFF:
+        if after.max() > 1.5 * end:
+            return Fit(order, deviation, verdict="no convergence (errors grow again)")
+        if len(after) > 1 and after.max() > 2.0 * after.min():
+            return Fit(order, deviation, verdict=f"no convergence (scatters down to {after.min():.1e})")
+    if len(after) > 1 and floor is None:
         floor = float(np.median(after))
     return Fit(order, deviation, cost_slope(small[first:last], error, cost), small[first:last], "",
                floor)
@@ -123,14 +125,14 @@ def flat_tail(y):
     return n if n >= FEWEST else 0
 
 
-def best_window(x, y, scatter, to_the_end):
+def best_window(x, y, scatter, least, to_the_end):
     """The longest row of points on a falling line: first, last + 1, slope, its standard error."""
     best, most = None, 0.0
     for first in range(len(x) - FEWEST + 1):
         for last in range(first + FEWEST, len(x) + 1):
             slope, deviation, rms = line(x[first:last], y[first:last])
             length = x[first] - x[last - 1]
-            sure = slope >= LEAST_ORDER and slope > 3.0 * deviation and rms <= scatter
+            sure = slope >= least and slope > 3.0 * deviation and rms <= scatter
             sure = sure and (last == len(x) or not to_the_end)
             if sure and length > most + 1e-9 and length >= 0.34 * (x[0] - x[-1]):
                 best, most = (first, last, slope, deviation), length
@@ -258,10 +260,10 @@ def advise(rows, error, cost, wanted):
     # the most accurate of the cheaper ones that were not a lucky hit, else of all
     honest = [c for c in cheaper if c.error + c.bar > wanted] or cheaper
     other = min(honest, key=lambda choice: choice.error)
-    loss = other.error / best.error if best.error > 0.0 else math.inf
+    loss = f", {other.error / best.error:.3g} times as much" if best.error > ROUND_OFF else ""
     return Advice(
         words + f"; the next cheaper one, {other.text}, costs {amount(other.cost, cost)} and is off "
-        f"by {off(other)}, {loss:.3g} times as much.", best,
+        f"by {off(other)}{loss}.", best,
     )
 
 

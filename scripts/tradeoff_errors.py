@@ -20,6 +20,7 @@ ERRORS = ["displacement", "force", "impulse", "energy"]
 MOST_ROWS = 20000
 MOST_COLUMNS = 40
 LEAST_ORDER = 0.3           # below, differences of successive runs show no limit
+ROUND_OFF = 1e-12           # runs that differ by no more agree
 LEAST_COMMON = 8            # times that runs must share to be compared
 
 
@@ -211,13 +212,15 @@ def extrapolate(traces):
     second = largest_difference(runs[1], runs[2])
     order = observed_order(first, second, h1, h2, h3)
     names = f"dt = {h1:.3g}, {h2:.3g}, {h3:.3g}"
+    if max(first, second) <= ROUND_OFF * largest(runs[2]):
+        return Reference(fine, spread_of(runs), f"the finest run; all agree ({names})", order, True)
     if not order > LEAST_ORDER:
         spread = spread_of(runs)
         return Reference(fine, spread, f"the finest run; no convergence seen ({names})", order)
     order = min(order, 8.0)
     limit = richardson(fine, runs[1], runs[2], order, h2, h3)
     earlier = richardson(middle, runs[0], runs[1], order, h1, h2)
-    bars = errors_against(earlier, Reference(limit, {}, ""))
+    bars = errors_against(at_common(earlier, times), Reference(limit, {}, ""))
     text = f"Richardson's limit of {names}, observed order {order:.2f}"
     return Reference(limit, bars, text, order, True)
 
@@ -255,6 +258,11 @@ def largest_difference(one, other):
     if len(one.u):
         return float(np.max(np.abs(one.u - other.u)))
     return float(np.max(np.abs(one.impulse - other.impulse)))
+
+
+def largest(trace):
+    """The largest displacement, or impulse where no displacement is printed."""
+    return float(np.max(np.abs(trace.u if len(trace.u) else trace.impulse)))
 
 
 def observed_order(first, second, h1, h2, h3):
