@@ -129,6 +129,8 @@ contains
                //to_text(system%newmark%beta)
          if (abs(system%newmark%alpha) > 0.0_wp) line = line//', HHT alpha ' &
                //to_text(system%newmark%alpha)
+         if (simulation%scene%settings%fourth_order) line = "  Gauss' method in two stages, " &
+               //'order 4; a complex factorization or solution counts as four'
          call say(log, line)
          if (n_explicit > 0) call say(log, '  '//plural(n_explicit, 'explicit element') &
                //', critical step '//to_text(simulation%critical(scheme_explicit)%step))
@@ -165,7 +167,9 @@ contains
          case (method_lagrange)
             line = 'Lagrange multipliers, velocities corrected at the ends of steps'
          case default
-            if (settings%anchored) then
+            if (settings%fourth_order) then
+               line = 'transformation, order 4: stepped to every impact anew'
+            else if (settings%anchored) then
                line = 'transformation, steps of one size that begin at events'
             else
                line = 'transformation, beta of the impact step ' &
