@@ -9,7 +9,8 @@ module constrained_step
    use motion_state, only: newmark_type, state_type, correct
    use equation_of_motion, only: system_type, predict_motion, fixed_force, residual, &
          solve_motion, prepare_motion, settle_massless
-   use impact_scene, only: scene_type, contact_motion_type, record_residual, note_contact_force
+   use impact_scene, only: scene_type, contact_motion_type, copy_contact_motion, &
+         record_residual, note_contact_force
    use step_contact, only: contact_step_type, add_contact_forces, smallest_beta
    use row_placement, only: place_rows
    use overlap_force, only: add_overlap_force
@@ -32,7 +33,7 @@ contains
       type(contact_motion_type), intent(in) :: from
       real(wp), intent(in) :: dt
       real(wp), intent(in) :: beta
-      type(contact_motion_type), intent(out) :: to
+      type(contact_motion_type), intent(inout) :: to   !! at the end; its arrays are used again
       type(error_type), allocatable, intent(out) :: error
       logical, intent(in), optional :: held(:)   !! (n_rows) rows held bilaterally, the others free
       type(newmark_type) :: newmark
@@ -45,7 +46,7 @@ contains
       call enter(scene%system%cost, phase_other, outer)
       newmark = scene%system%newmark
       newmark%beta = beta
-      to = from
+      call copy_contact_motion(from, to)
       to%jump = 0.0_wp
       to%left_out = 0.0_wp
       call predict_motion(scene%system, from%motion, dt, beta, to%motion)

@@ -6,7 +6,8 @@ module simulation
    use clock, only: seconds_now
    use cost_account, only: cost_type, start_clock, enter, leave, next_increment, end_increments, &
          phase_read, phase_build, phase_output
-   use steps, only: step_type, request_energy_print, procedure_frequency
+   use steps, only: step_type, request_type, request_energy_print, procedure_frequency
+   use output_plan, only: is_due
    use motion_state, only: state_type
    use energy_ledger, only: ledger_type, close_increment
    use effective_matrix, only: mark_implicit
@@ -15,7 +16,7 @@ module simulation
    use result_file, only: result_file_type, open_results, record_increment, close_results, &
          write_system, flush_results
    use command_line, only: command_type, version_text
-   use run_log, only: log_type, open_log, close_log, say, note, write_status
+   use run_log, only: log_type, open_log, close_log, say, note, write_status, has_line
    use progress, only: progress_type, start_progress, show_progress, end_progress
    use scene_setup, only: simulation_type, build_scene, begin_step, initial_motion
    use increment_count, only: count_increments, last_increment
@@ -307,20 +308,23 @@ contains
       type(output_type), intent(inout) :: output
       type(error_type), allocatable, intent(out) :: error
       integer :: n_events
+      logical :: last
 
       associate (scene => simulation%scene, motion => simulation%motion, &
             step => simulation%model%steps(counts(1)))
          call check_finite(motion%motion, scene%ledger, times(2), error)
          if (allocated(error)) return
-         call close_increment(scene%ledger, scene%system, motion%motion)
+         last = times(1) >= step%duration
+         if (last .or. needs_energies(step%requests, counts(2))) call close_increment( &
+               scene%ledger, scene%system, motion%motion)
          n_events = scene%n_events
          call count_events(simulation)
          call record_increment(output%results, scene, simulation%contact, motion, step%requests, &
-               counts(2), times(1) >= step%duration, error)
+               counts(2), last, error)
          if (allocated(error)) return
          call write_status(output%log, [counts, int(scene%n_iterations - output%iterations), &
                n_events], [times(1), motion%motion%t, times(2)])
-         if (.not. scene%system%structure%is_linear) then
+         if (has_line(counts(2)) .and. .not. scene%system%structure%is_linear) then
             call note_residuals(scene, counts(2), output%log)
          end if
          output%iterations = scene%n_iterations
@@ -369,7 +373,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       ! energies of every freedom, if just found, leave no doubt
-      if (allocated(ledger%found)) then
+      if (ledger%has_found) then
          if (all(abs(ledger%found) <= huge(1.0_wp))) return
       end if
       if (all(abs(motion%d) <= huge(1.0_wp)) .and. all(abs(motion%v) <= huge(1.0_wp)) .and. &
@@ -380,6 +384,16 @@ contains
             //new_line('a') &
             //'  cure: a smaller step, and a look at the loads and the energy before it')
    end subroutine check_finite
+
+   !> Whether energies are recorded or limited at the end of an increment.
+   pure function needs_energies(requests, increment) result(needed)
+      type(request_type), intent(in) :: requests(:)
+      integer, intent(in) :: increment
+      logical :: needed
+
+      needed = is_due(requests, [request_energy_print], increment, .false.) .or. &
+            any(requests%kind == request_energy_print .and. requests%balance_limit > 0.0_wp)
+   end function needs_energies
 
    !> The deck's limit on the balance error, a part of the largest energy met.
    subroutine check_balance(ledger, step, t, error)
