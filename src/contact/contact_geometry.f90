@@ -12,7 +12,8 @@ module contact_geometry
    use contactor_normals, only: find_normals
    use row_terms, only: row_terms_type, start_terms, start_row_terms, add_term
    use target_surface, only: target_type, new_target, update_target
-   use contact_search, only: partner_type, find_partner
+   use contact_partner, only: partner_type
+   use contact_search, only: find_partner
    use weighted_rows, only: weighted_rows_type, find_weighted_rows
    implicit none
    private

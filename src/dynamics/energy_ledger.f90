@@ -15,7 +15,7 @@ module energy_ledger
    private
 
    public :: ledger_type, open_ledger, record_span, record_impact, close_increment
-   public :: take_back_damping
+   public :: take_back_damping, record_works
    public :: record_friction, record_springs
    public :: group_energies, record_found
 
@@ -127,6 +127,15 @@ contains
       self%friction = self%friction - (stored(2) - self%stored(2))
       self%stored = stored
    end subroutine record_springs
+
+   !> Works over a span of smooth motion that the step itself has added up.
+   pure subroutine record_works(self, works)
+      type(ledger_type), intent(inout) :: self
+      real(wp), intent(in) :: works(2)           !! from outside, damping
+
+      self%external_work = self%external_work + works(1)
+      self%damping = self%damping + works(2)
+   end subroutine record_works
 
    !> Works of an increment and energies at its end, found on the way.
    pure subroutine record_found(self, external_work, damping, energies)

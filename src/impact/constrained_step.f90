@@ -7,7 +7,7 @@ module constrained_step
    use text, only: to_text
    use dof_map, only: reduce
    use motion_state, only: newmark_type, state_type, correct
-   use equation_of_motion, only: system_type, predict_motion, fixed_force, residual, &
+   use equation_of_motion, only: system_type, predict_motion, start_near, fixed_force, residual, &
          solve_motion, prepare_motion, settle_massless
    use impact_scene, only: scene_type, contact_motion_type, copy_contact_motion, &
          record_residual, note_contact_force
@@ -52,6 +52,7 @@ contains
       to%left_out = 0.0_wp
       call predict_motion(scene%system, from%motion, dt, beta, to%motion)
       fixed = fixed_force(scene%system, from%motion, to%motion)
+      call start_near(scene%system, from%motion, dt, beta, to%motion)
       call describe_step(scene, dt, beta, step, held)
       reference = 0.0_wp
       left = huge(left)

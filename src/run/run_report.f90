@@ -11,6 +11,7 @@ module run_report
    use surfaces, only: beta_given, contact_pair_type, rigid_plane, method_fictitious_force, &
          method_penalty, method_lagrange
    use transformation, only: impact_beta
+   use stability_limit, only: stable_frequency
    use impact_scene, only: event_impact, event_capture, event_release, event_contact, event_limit, &
          scene_type
    use automatic_groups, only: partition_type
@@ -128,12 +129,20 @@ contains
                //to_text(system%newmark%beta)
          if (abs(system%newmark%alpha) > 0.0_wp) line = line//', HHT alpha ' &
                //to_text(system%newmark%alpha)
+         if (simulation%scene%settings%fourth_order) line = "  Gauss' method in two stages, " &
+               //'order 4; a complex factorization or solution counts as four'
          call say(log, line)
          if (n_explicit > 0) call say(log, '  '//plural(n_explicit, 'explicit element') &
                //', critical step '//to_text(simulation%critical(scheme_explicit)%step))
-         if (simulation%critical(scheme_implicit)%omega > 0.0_wp) call say(log, &
-               '  highest implicit frequency at most ' &
-               //to_text(simulation%critical(scheme_implicit)%omega)//' rad/time')
+         associate (omega => simulation%critical(scheme_implicit)%omega, &
+               limit => stable_frequency(system%newmark))
+            if (omega > 0.0_wp) then
+               line = '  highest implicit frequency at most '//to_text(omega)//' rad/time'
+               if (limit < huge(limit)) line = line//', stable up to a step of ' &
+                     //to_text(limit/omega)
+               call say(log, line)
+            end if
+         end associate
       end associate
       call report_impact(simulation, log)
    end subroutine report_dynamics
@@ -158,7 +167,9 @@ contains
          case (method_lagrange)
             line = 'Lagrange multipliers, velocities corrected at the ends of steps'
          case default
-            if (settings%anchored) then
+            if (settings%fourth_order) then
+               line = 'transformation, order 4: stepped to every impact anew'
+            else if (settings%anchored) then
                line = 'transformation, steps of one size that begin at events'
             else
                line = 'transformation, beta of the impact step ' &
