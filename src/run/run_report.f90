@@ -249,6 +249,7 @@ contains
    subroutine report_summary(simulation, log)
       type(simulation_type), intent(in) :: simulation
       type(log_type), intent(in) :: log
+      character(len=:), allocatable :: line
 
       associate (n => simulation%n_events, ledger => simulation%scene%ledger)
          call say(log, 'reached time '//to_text(simulation%motion%motion%t))
@@ -259,7 +260,10 @@ contains
                'warning: MAX EVENTS was reached; rows captured by it: ' &
                //to_text(n(event_limit)))
          if (simulation%scene%rows%n > 0) call report_contact(simulation, log)
-         call say(log, 'energy: kinetic '//to_text(ledger%kinetic)//', strain ' &
+         line = 'energy: '
+         if (ledger%time < simulation%motion%motion%t) line = 'energy at time ' &
+               //to_text(ledger%time)//': '
+         call say(log, line//'kinetic '//to_text(ledger%kinetic)//', strain ' &
                //to_text(ledger%strain) &
                //', damping '//to_text(ledger%damping)//', friction '//to_text(ledger%friction) &
                //', impacts '//to_text(ledger%impact_loss) &
