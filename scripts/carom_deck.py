@@ -14,7 +14,6 @@ by its absolute path, so that the deck may be written anywhere; one that is edit
 
 import os
 import re
-import signal
 import subprocess
 import time
 from pathlib import Path
@@ -255,6 +254,15 @@ class Deck:
             items.append(item)
         self.items = items
 
+    def add_before_first(self, keyword, *lines):
+        """Puts a card before the first card of a keyword in the file itself, not in included ones."""
+        for place, item in enumerate(self.items):
+            if isinstance(item, Card) and item.keyword == squeezed(keyword):
+                self.items.insert(place, Card(lines[:1], lines[1:]))
+                self.cut = True
+                return
+        raise ScriptError(f"'{self.path}' itself has no card *{keyword}")
+
     def thin_output(self, frames=None, prints=None):
         """Sets FREQUENCY of the fields (`* FILE`) and of the tables (`* PRINT`); 0 removes the cards."""
         for keyword in REQUESTS:
@@ -307,9 +315,9 @@ def split_cards(lines):
 class Done:
     """A finished run: status, last line of the log, messages, seconds, costs by name."""
 
-    def __init__(self, status, messages, result, seconds):
+    def __init__(self, status, messages, result, seconds, late=False):
         self.status, self.messages, self.result, self.seconds = status, messages, result, seconds
-        self.late = status == -signal.SIGKILL
+        self.late = late
         log = Path(result).with_suffix(".log")
         self.log = log.read_text(errors="replace") if log.is_file() else ""
         self.last_line = (self.log.strip().splitlines() or messages.strip().splitlines() or [""])[-1]
@@ -337,8 +345,9 @@ def read_costs(result, log=""):
     return found
 
 
-def run_deck(carom, deck, result, define=None, threads=1, limit=None):
-    """Runs carom on a deck file; `limit` seconds at most, then the run is killed (`late`)."""
+def run_deck(carom, deck, result, define=None, threads=1, limit=None, begun=None):
+    """Runs carom on a deck file; `limit` seconds at most, then the run is killed (`late`). `begun` is
+    called with the process."""
     words = [str(carom), "run", str(deck), "-o", str(result), "--quiet", "--threads", str(threads)]
     for name, value in (define or {}).items():
         words += ["--define", f"{name}={number_text(value)}"]
@@ -352,16 +361,20 @@ def run_deck(carom, deck, result, define=None, threads=1, limit=None):
         )
     except OSError as error:
         raise ScriptError(f"cannot run '{carom}': {error.strerror}") from None
+    late = False
     try:
+        if begun:
+            begun(process)
         messages, _ = process.communicate(timeout=limit)
     except subprocess.TimeoutExpired:
+        late = True
         process.kill()
         messages, _ = process.communicate()
     except BaseException:      # interrupted: leave no run behind
         process.kill()
         process.wait()
         raise
-    return Done(process.returncode, messages, result, time.perf_counter() - started)
+    return Done(process.returncode, messages, result, time.perf_counter() - started, late)
 
 
 def find_carom(given=None):

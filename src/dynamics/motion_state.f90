@@ -4,7 +4,7 @@ module motion_state
    implicit none
    private
 
-   public :: state_type, newmark_type, predict, correct
+   public :: state_type, newmark_type, predict, hold, correct
 
    !> Motion of all freedoms at total time t.
    type :: state_type
@@ -36,6 +36,24 @@ contains
       trial%a = 0.0_wp*state%a
       trial%history = state%history
    end subroutine predict
+
+   !> Freedoms that stay where they are, with the velocity and acceleration that Newmark's rule has
+   !> for it: a = -v/(beta h) - (1/(2 beta) - 1) a0. beta > 0.
+   pure subroutine hold(newmark, state, dt, held, trial)
+      type(newmark_type), intent(in) :: newmark
+      type(state_type), intent(in) :: state       !! at the start of the step
+      real(wp), intent(in) :: dt
+      logical, intent(in) :: held(:)              !! (n_freedoms)
+      type(state_type), intent(inout) :: trial    !! from `predict`
+
+      associate (gamma => newmark%gamma, beta => newmark%beta)
+         where (held)
+            trial%d = state%d
+            trial%v = (1.0_wp - gamma/beta)*state%v + dt*(1.0_wp - gamma/(2.0_wp*beta))*state%a
+            trial%a = -state%v/(beta*dt) - (1.0_wp/(2.0_wp*beta) - 1.0_wp)*state%a
+         end where
+      end associate
+   end subroutine hold
 
    !> d = d~ + beta h^2 a,  v = v~ + gamma h a, for a change of the acceleration.
    pure subroutine correct(newmark, dt, delta_a, trial)

@@ -2,11 +2,12 @@
 !> static problem.
 module constrained_step
    use kinds, only: wp
+   use cost_account, only: enter, leave, phase_other, phase_contact
    use errors, only: error_type, new_error, status_numerical
    use text, only: to_text
    use dof_map, only: reduce
    use motion_state, only: newmark_type, state_type, correct
-   use equation_of_motion, only: system_type, predict_motion, fixed_force, residual, &
+   use equation_of_motion, only: system_type, predict_motion, start_near, fixed_force, residual, &
          solve_motion, prepare_motion, settle_massless
    use impact_scene, only: scene_type, contact_motion_type, record_residual, note_contact_force
    use step_contact, only: contact_step_type, add_contact_forces, smallest_beta
@@ -39,8 +40,9 @@ contains
       real(wp), dimension(size(from%motion%d)) :: fixed, psi, delta
       real(wp) :: reference, left
       logical :: converged
-      integer :: iteration
+      integer :: iteration, outer
 
+      call enter(scene%system%cost, phase_other, outer)
       newmark = scene%system%newmark
       newmark%beta = beta
       to = from
@@ -48,6 +50,7 @@ contains
       to%left_out = 0.0_wp
       call predict_motion(scene%system, from%motion, dt, beta, to%motion)
       fixed = fixed_force(scene%system, from%motion, to%motion)
+      call start_near(scene%system, from%motion, dt, beta, to%motion)
       call describe_step(scene, dt, beta, step, held)
       reference = 0.0_wp
       left = huge(left)
@@ -56,9 +59,8 @@ contains
          call prepare_motion(scene%system, dt, beta, to%motion%d, from%motion%history, error)
          if (allocated(error)) return
          delta = solve_motion(scene%system, psi)
-         call add_contact_forces(scene, step, from, to, delta, error)
-         if (allocated(error)) return
-         if (scene%settings%iterated) call add_overlap_force(scene, beta*dt**2, to, delta, error)
+         if (scene%rows%n > 0) call push_apart(scene, step, beta*dt**2, from, to, delta, &
+               error)
          if (allocated(error)) return
          call correct(newmark, dt, delta, to%motion)
          call note_contact_force(scene, to)
@@ -71,7 +73,27 @@ contains
       end do
       if (.not. converged) call not_converged(scene, to%motion%t, error)
       call settle_massless(scene%system, from%motion, to%motion)
+      call leave(scene%system%cost, outer)
    end subroutine advance_smoothly
+
+   !> Adds to the motion what contact forces of all kinds do.
+   subroutine push_apart(scene, step, beta_dt2, from, to, delta, error)
+      type(scene_type), intent(inout) :: scene
+      type(contact_step_type), intent(in) :: step
+      real(wp), intent(in) :: beta_dt2           !! beta h^2
+      type(contact_motion_type), intent(in) :: from
+      type(contact_motion_type), intent(inout) :: to
+      real(wp), intent(inout) :: delta(:)
+      type(error_type), allocatable, intent(out) :: error
+      integer :: outer
+
+      call enter(scene%system%cost, phase_contact, outer)
+      call add_contact_forces(scene, step, from, to, delta, error)
+      if (allocated(error)) return
+      if (scene%settings%iterated) call add_overlap_force(scene, beta_dt2, to, delta, error)
+      if (allocated(error)) return
+      call leave(scene%system%cost, outer)
+   end subroutine push_apart
 
    !> What contact needs to know of a dynamic step.
    subroutine describe_step(scene, dt, beta, step, held)
@@ -90,7 +112,7 @@ contains
    !> correction is small and the residual has come down to round-off: it falls no further. Nearly
    !> incompressible solids have such round-off above the tolerance.
    function has_converged(scene, fixed, from, to, delta, reference, left) result(converged)
-      type(scene_type), intent(in) :: scene
+      type(scene_type), intent(inout) :: scene
       real(wp), intent(in) :: fixed(:), delta(:), reference
       type(contact_motion_type), intent(in) :: from
       type(contact_motion_type), intent(inout) :: to   !! gets the history at its displacements
@@ -180,12 +202,13 @@ contains
    !> recover. So their jump is taken as linear, by a difference backwards, where what yields is
    !> elastic as the stiffness at the start is.
    function first_residual(system, fixed, from, ahead) result(psi)
-      type(system_type), intent(in) :: system
+      type(system_type), intent(inout) :: system
       real(wp), intent(in) :: fixed(:)
       type(state_type), intent(in) :: from
       real(wp), intent(in) :: ahead(:)           !! displacements, the prescribed ones moved on
       real(wp) :: psi(size(fixed))
       real(wp), parameter :: part = 1.0e-6_wp
+      real(wp) :: psi_behind(size(fixed))
       type(state_type) :: start, behind
 
       start = from
@@ -193,7 +216,8 @@ contains
       if (all(abs(ahead - from%d) <= 0.0_wp)) return
       behind = from
       behind%d = from%d - part*(ahead - from%d)
-      psi = psi - (residual(system, fixed, from%history, behind) - psi)/part
+      psi_behind = residual(system, fixed, from%history, behind)
+      psi = psi - (psi_behind - psi)/part
    end function first_residual
 
 end module constrained_step

@@ -8,7 +8,7 @@ module impact_scene
    use energy_ledger, only: ledger_type, record_span, take_back_damping, record_impact, &
          record_friction, record_springs
    use explicit_motion, only: explicit_motion_type
-   use compliance_store, only: compliance_store_type
+   use compliance_store, only: compliance_store_type, complex_columns_type
    use contact_geometry, only: contact_geometry_type
    use constraint_rows, only: rows_type, row_rates, row_accelerations, row_curvature, &
          acceleration_size, contact_forces, slip_increments, wall_work, law_penalty
@@ -80,6 +80,7 @@ module impact_scene
       logical :: direct = .false.
       logical :: locate_release = .true.
       logical :: anchored = .false.              !! EVENTS=ANCHOR
+      logical :: fourth_order = .false.          !! ORDER=4
    end type impact_settings_type
 
    !> The step at hand of a motion whose steps begin at events, not at the deck's times: from one
@@ -99,6 +100,7 @@ module impact_scene
       type(rows_type) :: rows
       type(contact_geometry_type) :: geometry
       type(compliance_store_type) :: compliances
+      type(complex_columns_type) :: held         !! of steps of fourth order
       type(impact_settings_type) :: settings
       type(ledger_type) :: ledger
       type(explicit_motion_type) :: explicit     !! of steps that are wholly explicit
@@ -106,6 +108,7 @@ module impact_scene
       type(event_type), allocatable :: events(:) !! grown by doubling
       integer :: n_events = 0                    !! since the last time they were fetched
       real(wp) :: dt = 0.0_wp                    !! of the increment at hand
+      real(wp) :: whole_step = 0.0_wp            !! fourth order: the step whose factors are kept
       real(wp), allocatable :: impulse(:)        !! (n_rows) of the increment at hand
       real(wp), allocatable :: curvature(:)      !! (n_rows) part of the gap acceleration at its end
       integer :: n_residuals = 0                 !! Newton iterations of the last solution
