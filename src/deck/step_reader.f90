@@ -270,7 +270,7 @@ contains
       type(model_type), intent(in) :: model
       type(card_type), intent(in) :: card
       type(error_type), allocatable, intent(out) :: error
-      real(wp), parameter :: third = 1.0_wp/3.0_wp
+      real(wp), parameter :: third = 1.0_wp/3.0_wp, slack = 1.0e-12_wp
 
       step%explicit = has_parameter(card, 'EXPLICIT')
       call read_order(step, model%source, card, error)
@@ -285,15 +285,19 @@ contains
          return
       end if
       step%gamma = 0.5_wp - step%alpha
-      step%beta = 0.25_wp*(1.0_wp - step%alpha)**2
-      if (step%explicit) step%beta = 0.0_wp
       call get_real_parameter(card, 'GAMMA', step%gamma, model%source, error)
       if (allocated(error)) return
+      step%beta = 0.25_wp*(0.5_wp + step%gamma)**2
+      if (step%explicit) step%beta = 0.0_wp
       call get_real_parameter(card, 'BETA', step%beta, model%source, error)
       if (allocated(error)) return
       if (step%gamma < 0.5_wp) then
          call fail_at(error, model%source, parameter_place(card, 'GAMMA'), &
                'GAMMA below 1/2 is unstable', cure='write GAMMA >= 0.5')
+      else if (step%gamma < 0.5_wp - step%alpha - slack) then
+         call fail_at(error, model%source, parameter_place(card, 'GAMMA'), &
+               'GAMMA below 1/2 - ALPHA is unstable', &
+               cure='remove GAMMA, or write at least '//to_text(0.5_wp - step%alpha))
       else if (step%beta < 0.0_wp .or. step%beta > 0.5_wp) then
          call fail_at(error, model%source, parameter_place(card, 'BETA'), &
                'BETA is out of range', cure='write a number from 0 to 0.5')
@@ -408,6 +412,9 @@ contains
          if (e > 0) call fail_at(error, model%source, parameter_place(card, 'BETA'), &
                'beta = 0 with implicit elements: element '//to_text(model%elements%id(e)), &
                cure='write BETA > 0, or EXPLICIT, or put the elements into explicit groups')
+         if (e == 0 .and. abs(step%alpha) > 0.0_wp) call fail_at(error, model%source, &
+               parameter_place(card, 'ALPHA'), 'ALPHA with beta = 0 is unstable', &
+               cure='remove ALPHA, or BETA')
       end if
    end subroutine check_schemes
 

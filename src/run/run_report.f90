@@ -11,6 +11,7 @@ module run_report
    use surfaces, only: beta_given, contact_pair_type, rigid_plane, method_fictitious_force, &
          method_penalty, method_lagrange
    use transformation, only: impact_beta
+   use stability_limit, only: stable_frequency
    use impact_scene, only: event_impact, event_capture, event_release, event_contact, event_limit, &
          scene_type
    use automatic_groups, only: partition_type
@@ -133,9 +134,15 @@ contains
          call say(log, line)
          if (n_explicit > 0) call say(log, '  '//plural(n_explicit, 'explicit element') &
                //', critical step '//to_text(simulation%critical(scheme_explicit)%step))
-         if (simulation%critical(scheme_implicit)%omega > 0.0_wp) call say(log, &
-               '  highest implicit frequency at most ' &
-               //to_text(simulation%critical(scheme_implicit)%omega)//' rad/time')
+         associate (omega => simulation%critical(scheme_implicit)%omega, &
+               limit => stable_frequency(system%newmark))
+            if (omega > 0.0_wp) then
+               line = '  highest implicit frequency at most '//to_text(omega)//' rad/time'
+               if (limit < huge(limit)) line = line//', stable up to a step of ' &
+                     //to_text(limit/omega)
+               call say(log, line)
+            end if
+         end associate
       end associate
       call report_impact(simulation, log)
    end subroutine report_dynamics
@@ -166,9 +173,9 @@ contains
                line = 'transformation, steps of one size that begin at events'
             else
                line = 'transformation, beta of the impact step ' &
-                     //to_text(impact_beta(simulation%scene, &
-                     simulation%model%steps(1)%dt))//' ('//trim(merge('given    ', &
-                     'automatic', settings%beta_choice == beta_given))//')'
+                     //to_text(impact_beta(simulation%scene))//' ('//trim(merge( &
+                     'given           ', 'that of the step', &
+                     settings%beta_choice == beta_given))//')'
             end if
          end select
       end associate
@@ -242,6 +249,7 @@ contains
    subroutine report_summary(simulation, log)
       type(simulation_type), intent(in) :: simulation
       type(log_type), intent(in) :: log
+      character(len=:), allocatable :: line
 
       associate (n => simulation%n_events, ledger => simulation%scene%ledger)
          call say(log, 'reached time '//to_text(simulation%motion%motion%t))
@@ -252,7 +260,10 @@ contains
                'warning: MAX EVENTS was reached; rows captured by it: ' &
                //to_text(n(event_limit)))
          if (simulation%scene%rows%n > 0) call report_contact(simulation, log)
-         call say(log, 'energy: kinetic '//to_text(ledger%kinetic)//', strain ' &
+         line = 'energy: '
+         if (ledger%time < simulation%motion%motion%t) line = 'energy at time ' &
+               //to_text(ledger%time)//': '
+         call say(log, line//'kinetic '//to_text(ledger%kinetic)//', strain ' &
                //to_text(ledger%strain) &
                //', damping '//to_text(ledger%damping)//', friction '//to_text(ledger%friction) &
                //', impacts '//to_text(ledger%impact_loss) &
