@@ -21,7 +21,7 @@ module effective_system
    implicit none
    private
 
-   public :: effective_system_type, new_effective_system, most_kept
+   public :: effective_system_type, new_effective_system, most_kept, name_singular
 
    integer, parameter :: n_slots = 4
    !> Largest profile, in entries, whose M, C and K are kept beside the factors.
@@ -303,6 +303,7 @@ contains
       end do
    end subroutine make_diagonal
 
+   !> The error of an equation without resistance.
    subroutine name_singular(structure, equation, error)
       type(structure_type), intent(in) :: structure
       integer, intent(in) :: equation

@@ -16,9 +16,11 @@ module contact_impulses
    use constraint_rows, only: row_gaps, row_rates, row_accelerations, row_curvature, slip_rates, &
          slip_products, rate_size, gap_size, wall_rates, contact_forces, sticks, &
          law_penalty
-   use impact_scene, only: scene_type, contact_motion_type, note_contact_force, gap_tolerance
+   use impact_scene, only: scene_type, contact_motion_type, note_contact_force, gap_tolerance, &
+         merge_gap_tolerance
    use row_compliance, only: compliance_type, mass_compliance, pushed, join_rates, split_forces
    use rough_rows, only: solve_rows
+   use contact_room, only: no_room
    implicit none
    private
 
@@ -227,10 +229,11 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(compliance_type) :: compliance
       real(wp), dimension(scene%rows%n) :: gaps, rates, impulse
-      real(wp) :: p(count(motion%touching))
+      real(wp) :: p(count(motion%touching)), length
       logical :: solved
 
       if (.not. any(motion%touching)) return
+      length = max(gap_size(scene%rows, motion%motion, scene%dt), scene%geometry%size)
       gaps = gaps_to_close(scene, motion)
       rates = merge(row_rates(scene%rows, motion%motion), 0.0_wp, motion%touching)
       if (maxval(abs(gaps)) <= gap_limit .and. maxval(abs(rates)) <= rate_limit) return
@@ -239,11 +242,31 @@ contains
       if (maxval(abs(gaps)) > gap_limit) then
          call solve_equality(compliance%w, gaps(compliance%rows), p, solved)
          call shift(scene, motion, pushed(scene, compliance, p))
+         call check_room(scene, motion, length, error)
+         if (allocated(error)) return
       end if
       if (maxval(abs(rates)) <= rate_limit) return
       rates = 0.0_wp
       call set_rates(scene, motion, motion%touching, rates, impulse, error)
    end subroutine project_touching
+
+   !> Rows that no motion can open together, as of a mass between two walls that have met, leave an
+   !> overlap: the motion cannot go on. (Gaps of bodies that slide on each other are not exact.)
+   subroutine check_room(scene, motion, length, error)
+      type(scene_type), intent(in) :: scene
+      type(contact_motion_type), intent(in) :: motion
+      real(wp), intent(in) :: length             !! what round-off of gaps is relative to
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: gaps(scene%rows%n), limit
+      integer :: worst
+
+      gaps = gaps_to_close(scene, motion)
+      worst = minloc(gaps, dim=1)
+      limit = merge_gap_tolerance*length
+      if (scene%rows%moving) limit = largest_shift*scene%geometry%size
+      if (gaps(worst) >= -limit) return
+      call no_room(scene%rows%node_id(worst), motion%motion%t, -gaps(worst), error)
+   end subroutine check_room
 
    !> Gaps of touching rows that are to be zero.
    function gaps_to_close(scene, motion) result(gaps)
