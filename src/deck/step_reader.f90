@@ -262,6 +262,10 @@ contains
       else if (step%dt_max < 0.0_wp .or. (step%dt_max > 0.0_wp .and. step%dt_max < step%dt)) then
          call fail_at(error, source, field_place(fields, 4), &
                'the largest increment must not be below dt', cure=line)
+      else if (step%dt_max > 0.0_wp .and. step%duration/huge(1) > step%dt_max) then
+         call fail_at(error, source, field_place(fields, 4), &
+               'the duration takes too many increments of this size', &
+               cure='a run has up to 2147483647 increments')
       end if
    end subroutine check_limits
 
