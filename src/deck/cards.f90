@@ -5,7 +5,7 @@ module cards
    use places, only: place_type, source_type, fail_at
    use properties, only: name_length
    use words, only: squeezed, find_word, advice
-   use numbers, only: parse_integer, parse_real
+   use numbers, only: parse_integer, parse_fraction
    implicit none
    private
 
@@ -144,9 +144,9 @@ contains
 
       i = parameter_index(card, name)
       if (i == 0) return
-      call parse_real(card%parameters(i)%value, value, cause)
+      call parse_fraction(card%parameters(i)%value, value, cause)
       if (allocated(cause)) call fail_at(error, source, card%parameters(i)%place, &
-            name//': '//cause, cure='write a finite number such as 0.5 or 1e3')
+            name//': '//cause, cure='write a finite number such as 0.5, 1e3 or 1/6')
    end subroutine get_real_parameter
 
    !> An integer parameter not below a limit; the value stays when the parameter is absent.

@@ -68,6 +68,8 @@ contains
          call check_frequency_step(step, model, s, deck, error)
          if (allocated(error)) return
       end if
+      call check_one_order(step, model, s, error)
+      if (allocated(error)) return
       model%steps(s) = step
       call read_requests(model, deck, s, error)
    end subroutine read_step
@@ -268,9 +270,11 @@ contains
       type(model_type), intent(in) :: model
       type(card_type), intent(in) :: card
       type(error_type), allocatable, intent(out) :: error
-      real(wp), parameter :: third = 1.0_wp/3.0_wp
+      real(wp), parameter :: third = 1.0_wp/3.0_wp, slack = 1.0e-12_wp
 
       step%explicit = has_parameter(card, 'EXPLICIT')
+      call read_order(step, model%source, card, error)
+      if (allocated(error)) return
       call read_tolerance(step, model%source, card, error)
       if (allocated(error)) return
       call get_real_parameter(card, 'ALPHA', step%alpha, model%source, error)
@@ -281,15 +285,19 @@ contains
          return
       end if
       step%gamma = 0.5_wp - step%alpha
-      step%beta = 0.25_wp*(1.0_wp - step%alpha)**2
-      if (step%explicit) step%beta = 0.0_wp
       call get_real_parameter(card, 'GAMMA', step%gamma, model%source, error)
       if (allocated(error)) return
+      step%beta = 0.25_wp*(0.5_wp + step%gamma)**2
+      if (step%explicit) step%beta = 0.0_wp
       call get_real_parameter(card, 'BETA', step%beta, model%source, error)
       if (allocated(error)) return
       if (step%gamma < 0.5_wp) then
          call fail_at(error, model%source, parameter_place(card, 'GAMMA'), &
                'GAMMA below 1/2 is unstable', cure='write GAMMA >= 0.5')
+      else if (step%gamma < 0.5_wp - step%alpha - slack) then
+         call fail_at(error, model%source, parameter_place(card, 'GAMMA'), &
+               'GAMMA below 1/2 - ALPHA is unstable', &
+               cure='remove GAMMA, or write at least '//to_text(0.5_wp - step%alpha))
       else if (step%beta < 0.0_wp .or. step%beta > 0.5_wp) then
          call fail_at(error, model%source, parameter_place(card, 'BETA'), &
                'BETA is out of range', cure='write a number from 0 to 0.5')
@@ -297,6 +305,64 @@ contains
          call check_schemes(step, model, card, error)
       end if
    end subroutine read_dynamic
+
+   !> ORDER: 2, Newmark's method, or 4, which takes no other parameter but DIRECT and SOLVER.
+   subroutine read_order(step, source, card, error)
+      type(step_type), intent(inout) :: step
+      type(source_type), intent(in) :: source
+      type(card_type), intent(in) :: card
+      type(error_type), allocatable, intent(out) :: error
+      character(len=word_length), parameter :: others(*) = [character(len=word_length) :: &
+            'EXPLICIT', 'GAMMA', 'BETA', 'ALPHA', 'TOLERANCE']
+      integer :: i
+
+      step%order_place = card%place
+      if (.not. has_parameter(card, 'ORDER')) return
+      step%order_place = parameter_place(card, 'ORDER')
+      call get_integer_parameter(card, 'ORDER', 1, step%order, source, error)
+      if (allocated(error)) return
+      if (step%order /= 2 .and. step%order /= 4) then
+         call fail_at(error, source, step%order_place, 'no scheme of this order', &
+               cure='write ORDER=2, the default, or ORDER=4')
+      else if (step%order == 2) then
+         return
+      else if (.not. step%direct) then
+         call fail_at(error, source, step%order_place, &
+               'ORDER=4 with automatic increments: it goes in increments of one size', &
+               cure='write DIRECT, ORDER=4, or remove ORDER')
+      else if (step%solver == solver_mumps) then
+         call fail_at(error, source, step%solver_place, &
+               'ORDER=4 has complex matrices, which MUMPS is not built in for', &
+               cure='write SOLVER=SKYLINE, or remove SOLVER or ORDER')
+      else
+         do i = 1, size(others)
+            if (.not. has_parameter(card, trim(others(i)))) cycle
+            call fail_at(error, source, parameter_place(card, trim(others(i))), &
+                  trim(others(i))//' means nothing with ORDER=4, which has no parameters', &
+                  cure='remove it, or ORDER')
+            return
+         end do
+      end if
+   end subroutine read_order
+
+   !> Impacts are treated in one way in all dynamic steps.
+   subroutine check_one_order(step, model, s, error)
+      type(step_type), intent(in) :: step
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: s
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      if (step%procedure /= procedure_dynamic) return
+      do i = 1, s - 1
+         if (model%steps(i)%procedure /= procedure_dynamic) cycle
+         if (model%steps(i)%order == step%order) cycle
+         call fail_at(error, model%source, step%order_place, &
+               'dynamic steps of different ORDER', &
+               cure='write the same ORDER on all *DYNAMIC cards')
+         return
+      end do
+   end subroutine check_one_order
 
    !> TOLERANCE, and what goes with automatic increments.
    subroutine read_tolerance(step, source, card, error)
@@ -346,6 +412,9 @@ contains
          if (e > 0) call fail_at(error, model%source, parameter_place(card, 'BETA'), &
                'beta = 0 with implicit elements: element '//to_text(model%elements%id(e)), &
                cure='write BETA > 0, or EXPLICIT, or put the elements into explicit groups')
+         if (e == 0 .and. abs(step%alpha) > 0.0_wp) call fail_at(error, model%source, &
+               parameter_place(card, 'ALPHA'), 'ALPHA with beta = 0 is unstable', &
+               cure='remove ALPHA, or BETA')
       end if
    end subroutine check_schemes
 

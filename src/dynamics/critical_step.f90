@@ -11,7 +11,7 @@ module critical_step
    implicit none
    private
 
-   public :: critical_type, find_critical, find_own_limits
+   public :: critical_type, find_critical, find_own_limits, reached_frequency
 
    !> What limits the step of the groups of one scheme.
    type :: critical_type
@@ -60,6 +60,45 @@ contains
             + critical%damping_rate/2.0_wp
       if (total > 0.0_wp) critical%step = sqrt(1.0_wp/(2.0_wp*gamma))*2.0_wp/total
    end subroutine find_critical
+
+   !> A frequency that the highest one of a scheme's elements is not below, all of them linear: the
+   !> largest Rayleigh quotient of the motions of one equation. (With a lumped mass it is at least
+   !> 1/sqrt(2) of the bound in a chain, the bound itself on single freedoms.) Zero if an equation
+   !> has no mass: it would yield.
+   function reached_frequency(structure, scheme) result(omega)
+      type(structure_type), intent(in) :: structure   !! equations numbered
+      integer, intent(in) :: scheme
+      real(wp) :: omega
+      real(wp), dimension(structure%map%n_eq) :: m, k, c
+      integer :: g
+
+      m = 0.0_wp
+      k = 0.0_wp
+      c = 0.0_wp
+      do g = 1, size(structure%groups)
+         call sum_masses(structure, structure%groups(g), m)
+         if (structure%groups(g)%scheme == scheme) call sum_diagonals(structure, &
+               structure%groups(g), k, c)
+      end do
+      omega = 0.0_wp
+      if (size(m) > 0 .and. all(m > 0.0_wp)) omega = sqrt(maxval(k/m))
+   end function reached_frequency
+
+   !> Adds a group to the diagonal of M.
+   subroutine sum_masses(structure, group, m_diagonal)
+      type(structure_type), intent(in) :: structure
+      type(group_type), intent(in) :: group
+      real(wp), intent(inout) :: m_diagonal(:)   !! (n_eq)
+      real(wp) :: m(size(group%lm, 1), size(group%lm, 1))
+      type(folded_type) :: folded
+      integer :: e
+
+      do e = 1, size(group%lm, 2)
+         call group_mass(group, e, group%lumped, m)
+         call fold(structure%map, group%lm(:, e), m, folded)
+         call add_diagonal(folded, m_diagonal)
+      end do
+   end subroutine sum_masses
 
    !> Critical explicit step of each element by itself: on its own lumped mass, or where it has none
    !> on its share of the masses around; huge where it has no stiffness, zero where it acts on a

@@ -125,7 +125,7 @@ contains
    subroutine record_frame(self, file, scene, list, snapshot, error)
       type(grid_type), intent(inout) :: self
       type(hdf5_file_type), intent(in) :: file
-      type(scene_type), intent(in) :: scene
+      type(scene_type), intent(inout) :: scene
       type(contact_pair_list_type), intent(in) :: list
       type(snapshot_type), intent(in) :: snapshot
       type(error_type), allocatable, intent(out) :: error

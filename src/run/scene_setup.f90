@@ -9,14 +9,14 @@ module scene_setup
    use mesh, only: scheme_implicit, scheme_explicit
    use steps, only: step_type, procedure_static, procedure_dynamic, procedure_frequency
    use histories, only: boundary_type, nodal_value_type
-   use structure, only: structure_type, new_structure, freedom_name, diagonal_mass
-   use redistributed_mass, only: mark_contact_nodes
+   use structure, only: structure_type, new_structure, diagonal_mass
    use equation_order, only: ordering_type, order_equations
    use external_load, only: begin_loads
    use prescribed_motion, only: begin_motions, start_motions, prescribed_freedoms
    use equation_of_motion, only: system_type, impose
    use solver_setup, only: begin_matrices
-   use critical_step, only: critical_type, find_critical
+   use critical_step, only: critical_type
+   use critical_check, only: check_critical, find_both
    use contact_pairs, only: contact_pair_list_type
    use impact_scene, only: scene_type, contact_motion_type, new_contact_motion
    use initial_contact, only: adjustment_type, build_rows, adjust_pairs, adjustment_remark, &
@@ -26,6 +26,7 @@ module scene_setup
    use massless_contacts, only: mark_massless_rows
    use automatic_groups, only: partition_type, resolve_automatic
    use impact_factory, only: make_impact_method, check_method, check_anchor
+   use order_check, only: check_order
    implicit none
    private
 
@@ -242,11 +243,13 @@ contains
          call impose(system, self%motion%motion)
          call check_jump(self%model, self%contact, self%scene, before, self%motion%motion, error)
          if (allocated(error)) return
-         call check_critical(self, step, error)
+         call check_frequencies(self, step, error)
          if (allocated(error)) return
          call mark_massless_rows(self%model, self%contact, system, self%scene%rows, error)
          if (allocated(error)) return
          call check_method(self%model, self%scene%settings, step, system%newmark%beta, error)
+         if (allocated(error)) return
+         call check_order(self%model, self%scene, step, error)
          if (allocated(error)) return
          call check_anchor(self%model, self%scene, step, error)
       end associate
@@ -345,54 +348,20 @@ contains
       end associate
    end subroutine find_massless
 
-   !> The critical step of explicit elements, and the highest implicit frequency.
-   subroutine check_critical(self, step, error)
+   !> Highest frequencies of the step, and whether its length is within what they allow.
+   subroutine check_frequencies(self, step, error)
       type(simulation_type), intent(inout) :: self
       type(step_type), intent(in) :: step
       type(error_type), allocatable, intent(out) :: error
-      character(len=:), allocatable :: culprit
-      real(wp), parameter :: slack = 1.0e-9_wp
+      type(source_line_type), allocatable :: notes(:)
+      integer :: i
 
-      associate (structure => self%scene%system%structure, limit => self%critical(scheme_explicit))
-         if (abs(self%critical_gamma - step%gamma) > 0.0_wp) then
-            call find_critical(structure, scheme_implicit, step%gamma, &
-                  self%critical(scheme_implicit))
-            call find_critical(structure, scheme_explicit, step%gamma, limit)
-            self%critical_gamma = step%gamma
-         end if
-         self%scene%system%omega_max = self%critical%omega
-         if (limit%massless_freedom > 0) then
-            call fail_at(error, self%model%source, step%procedure_place, &
-                  freedom_name(structure, limit%massless_freedom)//' is explicit and has no mass', &
-                  cure_of_no_mass(self%model, structure%map%node(limit%massless_freedom)))
-         else if (step%dt*(1.0_wp - slack) > limit%step) then
-            culprit = ''
-            if (limit%element > 0) culprit = ' of explicit element ' &
-                  //to_text(self%model%elements%id(limit%element))
-            call fail_at(error, self%model%source, step%time_place, 'the step '//to_text(step%dt) &
-                  //' is over the critical step '//to_text(limit%step)//culprit, &
-                  'take a step of at most '//to_text(0.9_wp*limit%step) &
-                  //' (0.9 of the critical one), or make the element implicit with *ELEMENT GROUP')
-         else if (step%dt > 0.95_wp*limit%step .and. self%scene%rows%n > 0) then
-            call add_remark(self, note_at(self%model%source, step%time_place, &
-                  'the step is within ' &
-                  //'5 % of the critical step '//to_text(limit%step) &
-                  //': contact then feeds the highest explicit mode, take 0.9 of it or less'))
-         end if
-      end associate
-   end subroutine check_critical
-
-   !> What helps an explicit node without mass.
-   function cure_of_no_mass(model, node) result(cure)
-      type(model_type), intent(in) :: model
-      integer, intent(in) :: node
-      character(len=:), allocatable :: cure
-      logical :: contact(model%nodes%n)
-
-      call mark_contact_nodes(model, contact)
-      cure = 'give it a mass, or make its elements implicit with *ELEMENT GROUP'
-      if (contact(node)) cure = 'MASS=REDISTRIBUTED takes the mass off contact nodes: make the ' &
-            //'elements along the contact surfaces implicit with *ELEMENT GROUP, or leave it out'
-   end function cure_of_no_mass
+      call find_both(self%scene%system, step%gamma, self%critical_gamma, self%critical)
+      call check_critical(self%model, self%scene, step, self%critical, notes, error)
+      if (allocated(error)) return
+      do i = 1, size(notes)
+         call add_remark(self, notes(i)%text)
+      end do
+   end subroutine check_frequencies
 
 end module scene_setup
