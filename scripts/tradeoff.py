@@ -135,8 +135,8 @@ def judge(points, given):
     references = find_references(rows, folder, parse_reference(given.reference))
     for row in rows:
         reference = references.get(row.point.problem_text)
-        trace = load_trace(folder, row.point.key) if row.state == "good" else None
-        if reference and trace is not None:
+        trace = load_trace(folder, row.point.key)
+        if trace is not None and trace.finite and row.state in ("good", "capped", "diverged"):
             row.errors = errors_against(trace, reference)
             row.bars = dict(reference.bars)
     given.references = references

@@ -98,10 +98,10 @@ def parse_values(text, option):
 
 
 def as_written(value):
-    """A value as decks have it: words in capitals, names of parameters as they are."""
+    """A value as decks have it: words in capitals, numbers and names of parameters as they are."""
     if value.lower() == "none":
         return "none"
-    return value if "<" in value else value.upper()
+    return value if "<" in value or parse_number(value) is not None else value.upper()
 
 
 def method_called(word):

@@ -3,6 +3,7 @@
 import textwrap
 
 import numpy as np
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from carom_results import BLACK, COLOURS, RED, plt
 from tradeoff_advice import front, grouped, series_of
@@ -37,7 +38,7 @@ def draw(rows, errors, cost, fits, wanted=None, choice=None, title=""):
             panel_of(panel, members, error, cost, fits, names, chosen)
             if wanted is not None and i == 0:
                 panel.axhline(wanted, color="0.35", lw=1.2, ls=(0, (6, 3)), zorder=1)
-            panel.set_title(problem or title, fontsize=12)
+            panel.set_title("" if i else problem or title, fontsize=12)
             if i == len(errors) - 1:
                 panel.set_xlabel(COST_LABELS.get(cost, cost.replace("_", " ")))
             if j == 0:
@@ -78,7 +79,17 @@ def panel_of(panel, rows, error, cost, fits, names, chosen):
         if row in rows:
             panel.plot(row.costs[cost], row.errors[error], "o", ms=17, mfc="none", mec=BLACK, mew=1.8,
                        zorder=4)
+    name_ticks(panel.xaxis, [row.costs.get(cost) or 1.0 for row in rows])
+    name_ticks(panel.yaxis, panel.get_ylim())
     mark_bad(panel, [row for row in rows if not row.good(error)], cost, names)
+
+
+def name_ticks(axis, values):
+    """Ticks at 1, 2, 5 with plain numbers where decades alone would be too few."""
+    if max(values) / min(values) < 100.0:
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())
 
 
 def draw_line(panel, fit, error, cost, number):

@@ -12,7 +12,7 @@ module equation_of_motion
          count_resisting
    use external_load, only: load_set_type, load_at
    use prescribed_motion, only: motion_set_type, impose_motion
-   use motion_state, only: state_type, newmark_type, predict, hold
+   use motion_state, only: state_type, newmark_type, predict, hold, copy_state
    use effective_system, only: effective_system_type
    use gauss_matrices, only: gauss_matrices_type
    implicit none
@@ -22,7 +22,7 @@ module equation_of_motion
    public :: predict_motion, start_near, fixed_force, residual, solve_motion, prepare_motion
    public :: prepare_mass, solve_mass, solve_together, force_balance, impose
    public :: settle_massless
-   public :: rigid_mass, count_updates
+   public :: rigid_mass, count_updates, resist
 
    !> A structure under the loads and conditions of a step, with its matrices.
    type :: system_type
@@ -49,11 +49,11 @@ contains
       type(state_type), intent(in) :: state
       real(wp), intent(in) :: dt
       real(wp), intent(in) :: beta               !! of this step, the impact step may have its own
-      type(state_type), intent(out) :: trial
+      type(state_type), intent(inout) :: trial   !! its arrays are used again
       type(newmark_type) :: newmark
 
       if (self%static) then
-         trial = state
+         call copy_state(state, trial)
          trial%t = state%t + dt
       else
          newmark = self%newmark

@@ -3,13 +3,14 @@ module increment_checks
    use kinds, only: wp
    use errors, only: error_type, new_error, status_numerical
    use text, only: to_text
-   use steps, only: step_type, request_energy_print
+   use steps, only: step_type, request_type, request_energy_print
+   use output_plan, only: is_due
    use motion_state, only: state_type
    use energy_ledger, only: ledger_type
    implicit none
    private
 
-   public :: check_finite, check_balance
+   public :: check_finite, check_balance, needs_energies
 
 contains
 
@@ -21,7 +22,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       ! energies of every freedom, if just found, leave no doubt
-      if (allocated(ledger%found)) then
+      if (ledger%has_found) then
          if (all(abs(ledger%found) <= huge(1.0_wp))) return
       end if
       if (all(abs(motion%d) <= huge(1.0_wp)) .and. all(abs(motion%v) <= huge(1.0_wp)) .and. &
@@ -32,6 +33,16 @@ contains
             //new_line('a') &
             //'  cure: a smaller step, and a look at the loads and the energy before it')
    end subroutine check_finite
+
+   !> Whether energies are recorded or limited at the end of an increment.
+   pure function needs_energies(requests, increment) result(needed)
+      type(request_type), intent(in) :: requests(:)
+      integer, intent(in) :: increment
+      logical :: needed
+
+      needed = is_due(requests, [request_energy_print], increment, .false.) .or. &
+            any(requests%kind == request_energy_print .and. requests%balance_limit > 0.0_wp)
+   end function needs_energies
 
    !> The deck's limit on the balance error, a part of the largest energy met.
    subroutine check_balance(ledger, step, t, error)

@@ -173,9 +173,9 @@ contains
                line = 'transformation, steps of one size that begin at events'
             else
                line = 'transformation, beta of the impact step ' &
-                     //to_text(impact_beta(simulation%scene, &
-                     simulation%model%steps(1)%dt))//' ('//trim(merge('given    ', &
-                     'automatic', settings%beta_choice == beta_given))//')'
+                     //to_text(impact_beta(simulation%scene))//' ('//trim(merge( &
+                     'given           ', 'that of the step', &
+                     settings%beta_choice == beta_given))//')'
             end if
          end select
       end associate
@@ -249,6 +249,7 @@ contains
    subroutine report_summary(simulation, log)
       type(simulation_type), intent(in) :: simulation
       type(log_type), intent(in) :: log
+      character(len=:), allocatable :: line
 
       associate (n => simulation%n_events, ledger => simulation%scene%ledger)
          call say(log, 'reached time '//to_text(simulation%motion%motion%t))
@@ -259,7 +260,10 @@ contains
                'warning: MAX EVENTS was reached; rows captured by it: ' &
                //to_text(n(event_limit)))
          if (simulation%scene%rows%n > 0) call report_contact(simulation, log)
-         call say(log, 'energy: kinetic '//to_text(ledger%kinetic)//', strain ' &
+         line = 'energy: '
+         if (ledger%time < simulation%motion%motion%t) line = 'energy at time ' &
+               //to_text(ledger%time)//': '
+         call say(log, line//'kinetic '//to_text(ledger%kinetic)//', strain ' &
                //to_text(ledger%strain) &
                //', damping '//to_text(ledger%damping)//', friction '//to_text(ledger%friction) &
                //', impacts '//to_text(ledger%impact_loss) &

@@ -14,13 +14,13 @@ module simulation
    use result_file, only: result_file_type, open_results, record_increment, close_results, &
          write_system, flush_results
    use command_line, only: command_type, version_text
-   use run_log, only: log_type, open_log, close_log, say, note, write_status
+   use run_log, only: log_type, open_log, close_log, say, note, write_status, has_line
    use progress, only: progress_type, start_progress, show_progress, end_progress
    use scene_setup, only: simulation_type, build_scene, begin_step, initial_motion
    use increment_count, only: count_increments, last_increment
    use step_start, only: start_step
    use increments, only: control_type, start_control, take_increment, take_automatic_increment
-   use increment_checks, only: check_finite, check_balance
+   use increment_checks, only: check_finite, check_balance, needs_energies
    use twin_motion, only: twins_type, start_twins, take_fine_increment, compare_twins, step_is_over
    use rehearsal, only: plan_type, rehearse, report_tolerance
    use frequency_run, only: run_frequency_step
@@ -339,20 +339,23 @@ contains
       type(output_type), intent(inout) :: output
       type(error_type), allocatable, intent(out) :: error
       integer :: n_events
+      logical :: last
 
       associate (scene => simulation%scene, motion => simulation%motion, &
             step => simulation%model%steps(counts(1)))
          call check_finite(motion%motion, scene%ledger, times(2), error)
          if (allocated(error)) return
-         call close_increment(scene%ledger, scene%system, motion%motion)
+         last = times(1) >= step%duration
+         if (last .or. needs_energies(step%requests, counts(2))) call close_increment( &
+               scene%ledger, scene%system, motion%motion)
          n_events = scene%n_events
          call count_events(simulation)
          call record_increment(output%results, scene, simulation%contact, motion, step%requests, &
-               counts(2), times(1) >= step%duration, error)
+               counts(2), last, error)
          if (allocated(error)) return
          call write_status(output%log, [counts, int(scene%n_iterations - output%iterations), &
                n_events], [times(1), motion%motion%t, times(2)])
-         if (.not. scene%system%structure%is_linear) then
+         if (has_line(counts(2)) .and. .not. scene%system%structure%is_linear) then
             call note_residuals(scene, counts(2), output%log)
          end if
          output%iterations = scene%n_iterations
