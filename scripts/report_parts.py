@@ -46,6 +46,7 @@ TRADES = (
     ("buildings", "two buildings in an earthquake", "buildings/buildings.inp", 1e-3, []),
 )
 NOT_VERIFIED = ("oblique_ball", "sliding_block", "buildings")   # would take a run twice as fine
+CHECKED = re.compile(r"^(?:ok|FAILED)\s+(.*): (\S+) <= (\S+)$", re.M)     # a line of stability.py
 DELIVERED = 5.0     # the error over TOLERANCE, at most
 
 
@@ -157,10 +158,35 @@ def recommended(section, folder, wanted):
 def stability(carom, folder, jobs):
     """The stability map."""
     where = (folder / "stability").resolve()
-    words = ["scripts/stability.py", "-o", where, "--carom", carom, "--jobs", jobs, "--quick"]
+    words = ["scripts/stability.py", "-o", where, "--carom", carom]
     section = Section("stability", "Stability of the program's own step")
     section.paragraph("Amplification over one step, measured on runs, over what theory says.")
-    return [script_section(section, words, where)]
+    script_section(section, words, where)
+    limits = where / "limits.csv"
+    if limits.is_file():
+        section.body.append("<h3>Largest stable ωh</h3>" + csv_table(limits))
+    for claim, value, limit in CHECKED.findall(section.output):
+        section.verdicts.append(at_most(claim, float(value), float(limit), "figure").own())
+    return [section]
+
+
+def csv_table(path, good=None):
+    """A table of a file with a head; good: whether a row is as it should be."""
+    with open(path, newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    if not rows:
+        raise ValueError(f"{path.name} has no rows")
+    kinds = [MARK_GOOD if good(row) else MARK_BAD for row in rows] if good else None
+    cells = [[shorter(text) for text in row.values()] for row in rows]
+    return table(list(rows[0]), cells, kinds)
+
+
+def shorter(text):
+    """A number with more than eight characters with six digits."""
+    try:
+        return f"{float(text):.6g}" if len(text) > 8 else text
+    except ValueError:
+        return text
 
 
 def extremes(carom, folder, jobs):
@@ -180,23 +206,13 @@ def extremes(carom, folder, jobs):
             output, messages, status = run_script([str(word) for word in words])
             if status != 0:
                 section.fail(f"{script.name} ended with status {status}\n{tail(output + messages)}")
-            section.body.append(extremes_table(script.stem, path))
+            heading = script.stem.replace("cases_", "").replace("_", " ").capitalize()
+            shown = csv_table(path, lambda row: row["outcome"] == "ok")
+            section.body.append(f"<h3>{heading}</h3>{shown}")
         except (ScriptError, OSError, ValueError) as error:
             section.fail(str(error))
         section.body.append(folded("Command", command_text(words)))
     return [section]
-
-
-def extremes_table(title, path):
-    """A table as a script of the extremes writes it."""
-    with open(path, newline="", encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
-    if not rows:
-        raise ValueError(f"{path.name} has no rows")
-    good = [row["outcome"] == "ok" for row in rows]
-    heading = f"<h3>{title.replace('cases_', '').replace('_', ' ').capitalize()}</h3>"
-    return heading + table(list(rows[0]), [list(row.values()) for row in rows],
-                           [MARK_GOOD if fine else MARK_BAD for fine in good])
 
 
 PARTS = {"trade": trades, "stability": stability, "extremes": extremes}
