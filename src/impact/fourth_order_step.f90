@@ -20,6 +20,11 @@ module fourth_order_step
 
    public :: smooth_step_type, step_smoothly, accept_step, stage_forces
 
+   !> What is added to the diagonal where rows depend on each other, in parts of its mean; what is
+   !> left of their motion must be below that part of it.
+   real(wp), parameter :: dependence = 1.0e-12_wp
+   real(wp), parameter :: dependence_limit = 1.0e-9_wp
+
    !> Where a step leads to and what it has found on its way.
    type :: smooth_step_type
       real(wp) :: dt = 0.0_wp
@@ -69,7 +74,9 @@ contains
       motion = row_products(scene, step%a)
       associate (held => scene%held)
          forces = -motion(held%rows)
-         call solve_complex_square(held%w, forces, solved)
+         call solve_complex_square(held%w, forces, dependence, solved)
+         if (solved) solved = all(abs(matmul(held%w, forces) + motion(held%rows)) <= &
+               dependence_limit*maxval(abs(motion)))
          if (.not. solved) then
             call dependent_rows(scene, from%motion%t, error)
             return
