@@ -201,3 +201,33 @@ def ball_impact_times(end, height=1.0, gravity=9.81, restitution=0.8):
     flights = 2.0 * fall * restitution ** np.arange(1, 200)
     times = fall + np.concatenate(([0.0], np.cumsum(flights)))
     return np.unique(times[times <= end])
+
+
+def masses_in_line(end, masses, gaps, speeds, restitution=1.0):
+    """Free masses in a row that hit their neighbours: their motion, and the impulse of each impact.
+    Displacements count from the first places; the gaps between neighbours must not be closed."""
+    masses, v = np.array(masses, dtype=float), np.array(speeds, dtype=float)
+    gaps, d = np.array(gaps, dtype=float), np.zeros(len(masses))
+    flights, impulses, start = Flights(), [], 0.0
+    while True:
+        flights.add(start, _uniform(d, v))
+        closing = v[:-1] - v[1:]
+        open_gaps = gaps + d[1:] - d[:-1]
+        meeting = closing > 1e-14 * np.max(np.abs(v))
+        waits = np.where(meeting, open_gaps / np.where(meeting, closing, 1.0), math.inf)
+        first = int(np.argmin(waits))
+        if start + waits[first] > end or len(impulses) >= MOST_IMPACTS:
+            return flights, np.array(impulses)
+        start, d = start + waits[first], d + waits[first] * v
+        i, j = first, first + 1
+        impulse = (1.0 + restitution) * closing[first] / (1.0 / masses[i] + 1.0 / masses[j])
+        v = v.copy()
+        v[i], v[j] = v[i] - impulse / masses[i], v[j] + impulse / masses[j]
+        impulses.append(impulse)
+
+
+def _uniform(d, v):
+    def piece(s):
+        return d[:, None] + np.outer(v, s), np.outer(v, np.ones_like(s))
+
+    return piece

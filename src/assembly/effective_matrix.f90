@@ -12,7 +12,7 @@ module effective_matrix
    private
 
    public :: find_profile, assemble_effective, assemble_sum, mark_implicit
-   public :: couples_equations, equations_of, list_coupled
+   public :: couples_equations, count_coupled, equations_of, list_coupled
 
    !> Elements from which threads share a group.
    integer, parameter :: worth_threads = 500
@@ -66,6 +66,18 @@ contains
 
       couples = has_implicit_matrix(group) .or. .not. group%lumped
    end function couples_equations
+
+   !> Elements of the groups that do.
+   pure function count_coupled(structure) result(n)
+      type(structure_type), intent(in) :: structure
+      integer :: n
+      integer :: g
+
+      n = 0
+      do g = 1, size(structure%groups)
+         if (couples_equations(structure%groups(g))) n = n + size(structure%groups(g)%member)
+      end do
+   end function count_coupled
 
    !> The equations behind some freedoms, constraints followed.
    pure function equations_of(map, freedoms) result(equations)

@@ -35,6 +35,7 @@ module element_groups
       integer :: history_start = 0               !! variables before this group's in the history
       integer :: scheme = scheme_implicit
       logical :: lumped = .true.
+      logical :: resists = .false.               !! its elements have forces: not so point masses
       real(wp), allocatable :: damping(:, :, :)  !! (3 n_nodes, 3 n_nodes, n), empty without any
       !> Of redistributed mass (else not allocated): 0 at nodes that have lost theirs, 1 elsewhere;
       !> what was moved to them; by what the element's mass is multiplied after that.

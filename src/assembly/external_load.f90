@@ -3,14 +3,14 @@ module external_load
    use kinds, only: wp
    use histories, only: amplitude_type, time_step, distributed_load_type, load_pressure, &
          load_body, load_centrifugal
-   use amplitude_value, only: amplitude_at
+   use amplitude_value, only: amplitude_at, next_corner
    use model, only: model_type
    use steps, only: step_type, procedure_static
    use structure, only: structure_type, inertia_force
    implicit none
    private
 
-   public :: load_set_type, begin_loads, load_at
+   public :: load_set_type, begin_loads, load_at, next_load_corner
 
    !> A pattern of forces times a factor of time.
    type :: load_type
@@ -353,6 +353,26 @@ contains
          force = force + weight(2)*self%loads(i)%pattern
       end do
    end function load_at
+
+   !> The first total time after t at which an amplitude of a load has a corner, huge if none has.
+   pure function next_load_corner(self, t) result(corner)
+      type(load_set_type), intent(in) :: self
+      real(wp), intent(in) :: t
+      real(wp) :: corner
+      integer :: i
+
+      corner = huge(corner)
+      do i = 1, size(self%loads)
+         associate (load => self%loads(i))
+            if (.not. load%has_amplitude) cycle
+            if (load%amplitude%time == time_step) then
+               corner = min(corner, load%t_start + next_corner(load%amplitude%t, t - load%t_start))
+            else
+               corner = min(corner, next_corner(load%amplitude%t, t))
+            end if
+         end associate
+      end do
+   end function next_load_corner
 
    !> Shares of a load's start and pattern in its size at time t.
    pure function weights(load, t) result(weight)

@@ -4,12 +4,12 @@ module prescribed_motion
    use histories, only: amplitude_type, boundary_type, time_step, &
          motion_displacement, motion_velocity
    use amplitude_value, only: amplitude_at, amplitude_slope, amplitude_integral, &
-         amplitude_second_integral
+         amplitude_second_integral, next_corner
    implicit none
    private
 
    public :: motion_type, motion_set_type, begin_motions, start_motions, &
-         impose_motion, prescribed_freedoms, are_at_rest
+         impose_motion, prescribed_freedoms, are_at_rest, next_motion_corner
 
    !> One prescribed freedom in the step at hand.
    type :: motion_type
@@ -171,6 +171,27 @@ contains
       end do
       rest = .true.
    end function are_at_rest
+
+   !> The first total time after t at which an amplitude of a motion has a corner, huge if none has.
+   pure function next_motion_corner(self, t) result(corner)
+      type(motion_set_type), intent(in) :: self
+      real(wp), intent(in) :: t
+      real(wp) :: corner
+      integer :: i
+
+      corner = huge(corner)
+      do i = 1, size(self%motions)
+         associate (motion => self%motions(i))
+            if (.not. motion%has_amplitude) cycle
+            if (motion%amplitude%time == time_step) then
+               corner = min(corner, motion%t_start &
+                     + next_corner(motion%amplitude%t, t - motion%t_start))
+            else
+               corner = min(corner, next_corner(motion%amplitude%t, t))
+            end if
+         end associate
+      end do
+   end function next_motion_corner
 
    pure subroutine evaluate(motion, t, d, v, a)
       type(motion_type), intent(in) :: motion

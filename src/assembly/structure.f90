@@ -20,6 +20,7 @@ module structure
    public :: elastic_force, damping_force, inertia_force, gather
    public :: group_strain_energy, group_kinetic_energy
    public :: strain_energy, plastic_work, group_history, freedom_name, diagonal_mass, least_mass
+   public :: count_resisting
 
    !> Everything that does not change from step to step, and the numbering that may.
    type :: structure_type
@@ -60,6 +61,7 @@ contains
       do g = 1, size(self%groups)
          call locate(self%groups(g), self%map)
          associate (group => self%groups(g))
+            group%resists = any(group%element%uses(1))
             if (group%element%blocks%n_chunks > 0) call new_chunks(group%chunks, &
                   group%element%blocks, group%ien, group%lm)
          end associate
@@ -77,6 +79,20 @@ contains
       end do
       call check_freedoms(self, model, error)
    end subroutine new_structure
+
+   !> Elements with forces in the groups of a scheme.
+   pure function count_resisting(self, scheme) result(n)
+      type(structure_type), intent(in) :: self
+      integer, intent(in) :: scheme              !! scheme_implicit or scheme_explicit
+      integer :: n
+      integer :: g
+
+      n = 0
+      do g = 1, size(self%groups)
+         if (self%groups(g)%scheme /= scheme .or. .not. self%groups(g)%resists) cycle
+         n = n + size(self%groups(g)%member)
+      end do
+   end function count_resisting
 
    !> The lm array: freedoms of every element of a group.
    subroutine locate(group, map)
@@ -208,7 +224,7 @@ contains
 
       do g = 1, size(self%groups)
          associate (group => self%groups(g))
-            if (group%scheme /= scheme) cycle
+            if (group%scheme /= scheme .or. .not. group%resists) cycle
             if (group%chunks%n == 0) then
                call add_one_by_one(group, d, history, force, updated, energy)
                cycle

@@ -2,7 +2,7 @@
 !> gap, with which normal. Rows against planes, of gap elements and of pairs with SMALL SLIDING stay
 !> as they are in the undeformed configuration.
 module contact_geometry
-   use kinds, only: wp
+   use kinds, only: wp, int64
    use model, only: model_type
    use surfaces, only: rigid_surface_type
    use histories, only: amplitude_type
@@ -12,7 +12,8 @@ module contact_geometry
    use contactor_normals, only: find_normals
    use row_terms, only: row_terms_type, start_terms, start_row_terms, add_term
    use target_surface, only: target_type, new_target, update_target
-   use contact_search, only: partner_type, find_partner
+   use contact_partner, only: partner_type
+   use contact_search, only: find_partner
    use weighted_rows, only: weighted_rows_type, find_weighted_rows
    implicit none
    private
@@ -38,6 +39,7 @@ module contact_geometry
    !> All surfaces, with what the search needs.
    type :: contact_geometry_type
       logical :: moving = .false.                !! some rows are not frozen
+      integer(int64) :: n_searches = 0           !! how often they have been placed
       real(wp) :: size = 0.0_wp                  !! largest extent of the nodes
       type(contact_row_type), allocatable :: rows(:)
       type(pass_type), allocatable :: passes(:)
@@ -155,6 +157,7 @@ contains
       type(positions_type) :: positions
       integer :: i, k
 
+      self%n_searches = self%n_searches + 1
       positions%t = t
       positions%reach = reach
       ! a row whose gap counts as none may be as far away as that

@@ -54,7 +54,7 @@ module card_rules
          'STEP;any;INC=/NAME=/~NLGEOM?/~PERTURBATION;-', &
          'END STEP;any;;-', &
          'STATIC;step;DIRECT/SOLVER=;dt, T[, dt min, dt max]', &
-         'DYNAMIC;step;DIRECT/EXPLICIT/GAMMA=/BETA=/ALPHA=/~ORDER=/TOLERANCE=/SOLVER=;'// &
+         'DYNAMIC;step;DIRECT/EXPLICIT/GAMMA=/BETA=/ALPHA=/ORDER=/TOLERANCE=/SOLVER=;'// &
          'dt, T[, dt min, dt max]', &
          'FREQUENCY;step;SOLVER=;number of modes', &
          'CLOAD;step;AMPLITUDE=/OP=;node or set, dof, force', &

@@ -13,6 +13,7 @@ module step_reader
    use condition_reader, only: read_boundaries, read_initial_conditions, read_loads
    use request_reader, only: read_requests
    use load_reader, only: read_distributed, read_base_motions
+   use order_reader, only: read_order, check_one_order
    use words, only: word_length, find_word
    use text, only: to_text
    implicit none
@@ -68,6 +69,8 @@ contains
          call check_frequency_step(step, model, s, deck, error)
          if (allocated(error)) return
       end if
+      call check_one_order(step, model, s, error)
+      if (allocated(error)) return
       model%steps(s) = step
       call read_requests(model, deck, s, error)
    end subroutine read_step
@@ -259,6 +262,10 @@ contains
       else if (step%dt_max < 0.0_wp .or. (step%dt_max > 0.0_wp .and. step%dt_max < step%dt)) then
          call fail_at(error, source, field_place(fields, 4), &
                'the largest increment must not be below dt', cure=line)
+      else if (step%dt_max > 0.0_wp .and. step%duration/huge(1) > step%dt_max) then
+         call fail_at(error, source, field_place(fields, 4), &
+               'the duration takes too many increments of this size', &
+               cure='a run has up to 2147483647 increments')
       end if
    end subroutine check_limits
 
@@ -271,6 +278,8 @@ contains
       real(wp), parameter :: third = 1.0_wp/3.0_wp, slack = 1.0e-12_wp
 
       step%explicit = has_parameter(card, 'EXPLICIT')
+      call read_order(step, model%source, card, error)
+      if (allocated(error)) return
       call read_tolerance(step, model%source, card, error)
       if (allocated(error)) return
       call get_real_parameter(card, 'ALPHA', step%alpha, model%source, error)

@@ -13,14 +13,15 @@ module effective_system
    use sparse_matrix, only: pattern_type, sparse_report_type, is_same, diagonal_places
    use mumps_solver, only: mumps_type, mumps_available, analyse, discard, &
          factorize_sparse => factorize, solve_sparse => solve
-   use structure, only: structure_type, freedom_name
-   use effective_matrix, only: assemble_effective, assemble_sum
+   use mesh, only: scheme_implicit
+   use structure, only: structure_type, freedom_name, count_resisting
+   use effective_matrix, only: assemble_effective, assemble_sum, count_coupled
    use sparse_effective, only: find_pattern, assemble_sparse, fill_empty_diagonal
    use solver_choice, only: work_type, choice_type, first_choice, refine_choice
    implicit none
    private
 
-   public :: effective_system_type, new_effective_system, most_kept
+   public :: effective_system_type, new_effective_system, most_kept, name_singular
 
    integer, parameter :: n_slots = 4
    !> Largest profile, in entries, whose M, C and K are kept beside the factors.
@@ -50,13 +51,14 @@ module effective_system
       type(pattern_type) :: pattern
       type(choice_type), public :: choice         !! of the solver, this step
       logical :: has_parts = .false.
+      logical :: counts_solves = .true.           !! false: the mass of explicit elements divides
       integer :: current = 1
       integer(int64) :: clock = 0
       integer(int64), public :: n_factorizations = 0
       integer(int64), public :: n_solves = 0
+      integer(int64), public :: n_assembled = 0   !! element matrices worked out
       integer(int64), public :: generation = 0    !! how often all matrices have been dropped
       real(wp), public :: factor_seconds = 0.0_wp   !! elapsed in factorizations
-      real(wp), public :: solve_seconds = 0.0_wp
    contains
       procedure :: begin
       procedure :: prepare
@@ -109,6 +111,9 @@ contains
       type(pattern_type) :: pattern
 
       call self%forget()
+      self%counts_solves = profile_entries(profile) > profile%n .or. &
+            count_resisting(structure, scheme_implicit) > 0 .or. &
+            all(structure%groups%scheme == scheme_implicit)
       call first_choice(self%choice, profile, work, mumps_available())
       if (self%choice%open) then
          call find_pattern(structure, pattern)
@@ -185,12 +190,14 @@ contains
          slot%is_sparse = .false.
          if (.not. keeps_parts(structure, factors) .or. profile_entries(profile) > most_kept) then
             call assemble_effective(structure, profile, d, history, factors, slot%matrix)
+            self%n_assembled = self%n_assembled + count_coupled(structure)
             return
          end if
          if (.not. self%has_parts) then
             do i = 1, 3
                call assemble_sum(structure, profile, d, history, unit(:, i), self%parts(i))
             end do
+            self%n_assembled = self%n_assembled + 3*count_coupled(structure)
             self%has_parts = .true.
          end if
          call combine(slot%matrix, factors, self%parts)
@@ -257,6 +264,7 @@ contains
 
       if (.not. keeps_parts(structure, factors)) then
          call assemble_sparse(structure, self%pattern, d, history, factors, values)
+         self%n_assembled = self%n_assembled + count_coupled(structure)
          return
       end if
       if (.not. self%has_parts) then
@@ -264,6 +272,7 @@ contains
             call assemble_sparse(structure, self%pattern, d, history, unit(:, i), &
                   self%sparse_parts(i)%values)
          end do
+         self%n_assembled = self%n_assembled + 3*count_coupled(structure)
          self%has_parts = .true.
       end if
       associate (parts => self%sparse_parts)
@@ -294,6 +303,7 @@ contains
       end do
    end subroutine make_diagonal
 
+   !> The error of an equation without resistance.
    subroutine name_singular(structure, equation, error)
       type(structure_type), intent(in) :: structure
       integer, intent(in) :: equation
@@ -304,8 +314,10 @@ contains
          if (structure%map%id(structure%map%dof(f), structure%map%node(f)) == equation) exit
       end do
       call new_error(error, status_numerical, 'singular system: '//freedom_name(structure, f) &
-            //' can move without resistance'//new_line('a') &
-            //'  cure: hold it with *BOUNDARY, or connect it with an element that has stiffness')
+            //' can move without resistance, or with one that is lost in the round-off of the ' &
+            //'stiffness around it'//new_line('a') &
+            //'  cure: hold it with *BOUNDARY, or connect it with an element that has stiffness; ' &
+            //'where stiffnesses differ by 1e13, write *EQUATION instead of the stiff element')
    end subroutine name_singular
 
    !> Solves with the matrix last prepared; b is overwritten.
@@ -330,9 +342,7 @@ contains
       integer, intent(in) :: n, n_columns
       real(wp), intent(inout) :: b(n, n_columns)
       type(error_type), allocatable :: failure
-      real(wp) :: started
 
-      started = seconds_now()
       associate (slot => self%slots(self%current))
          if (slot%is_sparse) then
             call solve_sparse(slot%sparse, b, failure)
@@ -343,8 +353,7 @@ contains
             call solve_skylines(slot%matrix, b)
          end if
       end associate
-      self%n_solves = self%n_solves + n_columns
-      self%solve_seconds = self%solve_seconds + seconds_now() - started
+      if (self%counts_solves) self%n_solves = self%n_solves + n_columns
    end subroutine solve_columns
 
 end module effective_system

@@ -5,16 +5,17 @@ module energy_ledger
    use kinds, only: wp
    use mesh, only: scheme_implicit, scheme_explicit
    use structure, only: elastic_force, strain_energy, plastic_work, group_strain_energy, &
-         group_kinetic_energy, damping_force, inertia_force
+         group_kinetic_energy, damping_force, inertia_force, count_resisting
    use external_load, only: load_at
    use motion_state, only: state_type
+   use cost_account, only: enter, leave, phase_elements
    use equation_of_motion, only: system_type
    use reactions, only: reaction_forces
    implicit none
    private
 
    public :: ledger_type, open_ledger, record_span, record_impact, close_increment
-   public :: take_back_damping
+   public :: take_back_damping, record_works
    public :: record_friction, record_springs
    public :: group_energies, record_found
 
@@ -34,7 +35,9 @@ module energy_ledger
       real(wp) :: scale = 0.0_wp                !! largest energy or work met so far
       !> Kinetic and strain energy and plastic work at the end of the increment at hand, where the
       !> step has found them on its way.
-      real(wp), allocatable :: found(:)
+      real(wp) :: found(3) = 0.0_wp
+      logical :: has_found = .false.
+      real(wp) :: time = 0.0_wp                 !! of the energies
    end type ledger_type
 
 contains
@@ -42,7 +45,7 @@ contains
    !> Starts the account at the first state.
    subroutine open_ledger(self, system, state)
       type(ledger_type), intent(out) :: self
-      type(system_type), intent(in) :: system
+      type(system_type), intent(inout) :: system
       type(state_type), intent(in) :: state
 
       call close_increment(self, system, state)
@@ -54,7 +57,7 @@ contains
    !> beta = 1/4, gamma = 1/2: loads and prescribed motion from outside, damping, contact forces.
    subroutine record_span(self, system, from, to, contact_from, contact_to)
       type(ledger_type), intent(inout) :: self
-      type(system_type), intent(in) :: system
+      type(system_type), intent(inout) :: system
       type(state_type), intent(in) :: from, to
       real(wp), intent(in) :: contact_from(:), contact_to(:)   !! (n_freedoms) contact forces
       real(wp) :: delta_d(size(from%d)), force(size(from%d))
@@ -76,16 +79,16 @@ contains
    !> Work of the reactions where a freedom is moved.
    subroutine record_reactions(self, system, from, to, contact_from, contact_to)
       type(ledger_type), intent(inout) :: self
-      type(system_type), intent(in) :: system
+      type(system_type), intent(inout) :: system
       type(state_type), intent(in) :: from, to
       real(wp), intent(in) :: contact_from(:), contact_to(:)
-      real(wp) :: moved(size(from%d))
+      real(wp), dimension(size(from%d)) :: moved, before, after
 
       moved = merge(to%d - from%d, 0.0_wp, system%structure%map%prescribed)
       if (.not. any(abs(moved) > 0.0_wp)) return
-      self%external_work = self%external_work + dot_product(moved, &
-            reaction_forces(system, from, contact_from) + reaction_forces(system, to, &
-            contact_to))/2.0_wp
+      before = reaction_forces(system, from, contact_from)
+      after = reaction_forces(system, to, contact_to)
+      self%external_work = self%external_work + dot_product(moved, before + after)/2.0_wp
    end subroutine record_reactions
 
    !> Work of damping forces that the acceleration at the start of a span has left out.
@@ -125,6 +128,15 @@ contains
       self%stored = stored
    end subroutine record_springs
 
+   !> Works over a span of smooth motion that the step itself has added up.
+   pure subroutine record_works(self, works)
+      type(ledger_type), intent(inout) :: self
+      real(wp), intent(in) :: works(2)           !! from outside, damping
+
+      self%external_work = self%external_work + works(1)
+      self%damping = self%damping + works(2)
+   end subroutine record_works
+
    !> Works of an increment and energies at its end, found on the way.
    pure subroutine record_found(self, external_work, damping, energies)
       type(ledger_type), intent(inout) :: self
@@ -134,23 +146,28 @@ contains
       self%external_work = self%external_work + external_work
       self%damping = self%damping + damping
       self%found = energies
+      self%has_found = .true.
    end subroutine record_found
 
    !> Energies at the end of an increment and the balance error.
    subroutine close_increment(self, system, state)
       type(ledger_type), intent(inout) :: self
-      type(system_type), intent(in) :: system
+      type(system_type), intent(inout) :: system
       type(state_type), intent(in) :: state
+      integer :: outer
 
-      if (allocated(self%found)) then
+      if (self%has_found) then
          self%kinetic = self%found(1)
          self%strain = self%found(2)
          self%plastic = self%found(3)
-         deallocate (self%found)
+         self%has_found = .false.
       else
+         call enter(system%cost, phase_elements, outer)
          self%kinetic = dot_product(state%v, inertia_force(system%structure, state%v))/2.0_wp
          call find_stored(system, state, self%strain, self%plastic)
+         call leave(system%cost, outer)
       end if
+      self%time = state%t
       self%strain = self%strain + sum(self%stored)
       self%total = self%kinetic + self%strain
       self%balance_error = self%total + self%damping + self%plastic + self%friction &
@@ -161,11 +178,14 @@ contains
    !> Strain energy and plastic work; of a linear structure along with the forces, which are quicker
    !> to find than strains.
    subroutine find_stored(system, state, strain, plastic)
-      type(system_type), intent(in) :: system
+      type(system_type), intent(inout) :: system
       type(state_type), intent(in) :: state
       real(wp), intent(out) :: strain, plastic
       real(wp) :: force(size(state%d)), updated(size(state%history)), energy(2)
 
+      system%cost%energy_updates = system%cost%energy_updates &
+            + count_resisting(system%structure, scheme_implicit) &
+            + count_resisting(system%structure, scheme_explicit)
       if (.not. system%structure%is_linear) then
          strain = strain_energy(system%structure, state%d, state%history)
          plastic = plastic_work(system%structure, state%history)
@@ -184,12 +204,14 @@ contains
 
    !> Kinetic and strain energy of every group, one after the other.
    function group_energies(system, state) result(energies)
-      type(system_type), intent(in) :: system
+      type(system_type), intent(inout) :: system
       type(state_type), intent(in) :: state
       real(wp) :: energies(2*size(system%structure%groups))
       integer :: g
 
       do g = 1, size(system%structure%groups)
+         system%cost%energy_updates = system%cost%energy_updates &
+               + size(system%structure%groups(g)%member)
          associate (group => system%structure%groups(g))
             energies(2*g - 1) = group_kinetic_energy(group, state%v)
             energies(2*g) = group_strain_energy(group, state%d, state%history)

@@ -1,24 +1,28 @@
 !> The equation of motion M a + C v + S(d) = f with its implicit and explicit parts, loads and
 !> prescribed motion: residual, effective matrix, equilibrium acceleration, reactions.
 module equation_of_motion
-   use kinds, only: wp
+   use kinds, only: wp, int64
+   use cost_account, only: cost_type, enter, leave, charge, phase_elements, phase_solve, &
+         phase_factor
    use errors, only: error_type
    use mesh, only: scheme_implicit, scheme_explicit
    use skyline_matrix, only: profile_type, new_profile
    use dof_map, only: reduce, expand, follow_constraints
-   use structure, only: structure_type, elastic_force, damping_force, inertia_force
+   use structure, only: structure_type, elastic_force, damping_force, inertia_force, &
+         count_resisting
    use external_load, only: load_set_type, load_at
    use prescribed_motion, only: motion_set_type, impose_motion
-   use motion_state, only: state_type, newmark_type, predict
+   use motion_state, only: state_type, newmark_type, predict, hold, copy_state
    use effective_system, only: effective_system_type
+   use gauss_matrices, only: gauss_matrices_type
    implicit none
    private
 
    public :: system_type
-   public :: predict_motion, fixed_force, residual, solve_motion, prepare_motion
-   public :: prepare_mass, solve_mass, solve_together, force_balance, impose, resisting_force
+   public :: predict_motion, start_near, fixed_force, residual, solve_motion, prepare_motion
+   public :: prepare_mass, solve_mass, solve_together, force_balance, impose
    public :: settle_massless
-   public :: rigid_mass
+   public :: rigid_mass, count_updates, resist
 
    !> A structure under the loads and conditions of a step, with its matrices.
    type :: system_type
@@ -28,6 +32,8 @@ module equation_of_motion
       type(newmark_type) :: newmark
       type(profile_type) :: profile
       type(effective_system_type) :: matrices
+      type(gauss_matrices_type) :: gauss         !! those of steps of fourth order
+      type(cost_type) :: cost
       logical :: static = .false.
       real(wp) :: tolerance = 1.0e-10_wp         !! of the Newton iteration, relative
       integer :: max_iterations = 50
@@ -43,11 +49,11 @@ contains
       type(state_type), intent(in) :: state
       real(wp), intent(in) :: dt
       real(wp), intent(in) :: beta               !! of this step, the impact step may have its own
-      type(state_type), intent(out) :: trial
+      type(state_type), intent(inout) :: trial   !! its arrays are used again
       type(newmark_type) :: newmark
 
       if (self%static) then
-         trial = state
+         call copy_state(state, trial)
          trial%t = state%t + dt
       else
          newmark = self%newmark
@@ -56,6 +62,30 @@ contains
       end if
       call impose(self, trial)
    end subroutine predict_motion
+
+   !> The state that Newton's method starts from, after `predict_motion`. Where omega h is large the
+   !> acceleration throws the predictor (omega h)^2 times as far as a freedom ever gets, and what is
+   !> corrected from there has the round-off of that distance. Such freedoms start from where they
+   !> are.
+   subroutine start_near(self, state, dt, beta, trial)
+      type(system_type), intent(in) :: self
+      type(state_type), intent(in) :: state      !! at the start of the step
+      real(wp), intent(in) :: dt
+      real(wp), intent(in) :: beta
+      type(state_type), intent(inout) :: trial
+      real(wp), parameter :: far = 16.0_wp
+      type(newmark_type) :: newmark
+      logical :: held(size(state%d))
+
+      if (.not. beta > 0.0_wp) return
+      held = (0.5_wp - beta)*dt**2*abs(state%a) > far*(abs(state%d) + dt*abs(state%v))
+      if (.not. any(held)) return
+      held = held .and. .not. self%structure%map%prescribed
+      newmark = self%newmark
+      newmark%beta = beta
+      call hold(newmark, state, dt, held, trial)
+      call impose(self, trial)
+   end subroutine start_near
 
    !> Puts prescribed freedoms where they have to be at the state's time, dependent ones after them.
    subroutine impose(self, state)
@@ -72,46 +102,60 @@ contains
    !> The part of the residual that does not change in the iteration (HHT alpha, 0 without):
    !> (1 + alpha) (f1 - S_E(d~, v~)) - alpha (f0 - S(d0, v0)).
    function fixed_force(self, state, predictor) result(force)
-      type(system_type), intent(in) :: self
+      type(system_type), intent(inout) :: self
       type(state_type), intent(in) :: state      !! at the start of the step
       type(state_type), intent(inout) :: predictor   !! gets the history of explicit elements
       real(wp) :: force(self%structure%map%n_freedoms)
-      real(wp) :: alpha
+      real(wp) :: resistance(size(force)), alpha
 
       alpha = merge(0.0_wp, self%newmark%alpha, self%static)
-      force = load_at(self%loads, size(force), predictor%t) &
-            - resisting_force(self, scheme_explicit, predictor, state%history)
+      call resist(self, scheme_explicit, predictor, state%history, resistance)
+      force = load_at(self%loads, size(force), predictor%t) - resistance
       if (.not. abs(alpha) > 0.0_wp) return
       force = (1.0_wp + alpha)*force - alpha*force_balance(self, state)
    end function fixed_force
 
    !> psi = fixed - (1 + alpha) S_I(d, v) - M a, on freedoms.
    function residual(self, fixed, history, trial) result(psi)
-      type(system_type), intent(in) :: self
+      type(system_type), intent(inout) :: self
       real(wp), intent(in) :: fixed(:)           !! from `fixed_force`
       real(wp), intent(in) :: history(:)         !! at the start of the step
       type(state_type), intent(inout) :: trial   !! gets the history of implicit elements
       real(wp) :: psi(size(fixed))
 
-      psi = fixed - (1.0_wp + merge(0.0_wp, self%newmark%alpha, self%static)) &
-            *resisting_force(self, scheme_implicit, trial, history)
+      call resist(self, scheme_implicit, trial, history, psi)
+      psi = fixed - (1.0_wp + merge(0.0_wp, self%newmark%alpha, self%static))*psi
       if (self%static .or. .not. any(abs(trial%a) > 0.0_wp)) return
       psi = psi - inertia_force(self%structure, trial%a)
    end function residual
 
    !> S(d) + C v of the groups of a scheme; no damping in a static step.
    !> The elements' history goes from the one given to that of the state.
-   function resisting_force(self, scheme, state, history) result(force)
-      type(system_type), intent(in) :: self
+   subroutine resist(self, scheme, state, history, force)
+      type(system_type), intent(inout) :: self
       integer, intent(in) :: scheme
       type(state_type), intent(inout) :: state
-      real(wp), intent(in) :: history(:)         !! last accepted
-      real(wp) :: force(self%structure%map%n_freedoms)
+      real(wp), intent(in), contiguous :: history(:)   !! last accepted
+      real(wp), intent(out), contiguous :: force(:)    !! (n_freedoms)
+      integer :: outer
 
       force = 0.0_wp
+      if (count_resisting(self%structure, scheme) == 0) return
+      call enter(self%cost, phase_elements, outer)
+      call count_updates(self, scheme)
       call elastic_force(self%structure, scheme, state%d, history, force, state%history)
       if (.not. self%static) call damping_force(self%structure, scheme, state%v, force)
-   end function resisting_force
+      call leave(self%cost, outer)
+   end subroutine resist
+
+   !> Counts the elements of a scheme whose forces are worked out once.
+   pure subroutine count_updates(self, scheme)
+      type(system_type), intent(inout) :: self
+      integer, intent(in) :: scheme
+
+      self%cost%element_updates = self%cost%element_updates &
+            + count_resisting(self%structure, scheme)
+   end subroutine count_updates
 
    !> Freedoms without mass are where forces balance; Newmark's rule knows no velocity of theirs. At
    !> beta = 1/4 it is 2 (d1 - d0)/dt - v0, which swings for ever while the acceleration grows with
@@ -138,15 +182,16 @@ contains
 
    !> f - C v - S(d) at a state, all groups.
    function force_balance(self, state) result(force)
-      type(system_type), intent(in) :: self
+      type(system_type), intent(inout) :: self
       type(state_type), intent(in) :: state
       type(state_type) :: at
       real(wp) :: force(self%structure%map%n_freedoms)
+      real(wp), dimension(size(force)) :: implicit_part, explicit_part
 
       at = state
-      force = load_at(self%loads, size(force), state%t) &
-            - resisting_force(self, scheme_implicit, at, state%history) &
-            - resisting_force(self, scheme_explicit, at, state%history)
+      call resist(self, scheme_implicit, at, state%history, implicit_part)
+      call resist(self, scheme_explicit, at, state%history, explicit_part)
+      force = load_at(self%loads, size(force), state%t) - implicit_part - explicit_part
    end function force_balance
 
    !> The mass that each freedom has in a translation of all: M times one in its direction. Its sum
@@ -177,8 +222,28 @@ contains
       factors(2:3) = (1.0_wp + self%newmark%alpha)*factors(2:3)
       if (self%static) factors = [0.0_wp, 0.0_wp, 1.0_wp]
       if (.not. self%structure%is_linear) call self%matrices%forget()
-      call self%matrices%prepare(self%structure, self%profile, d, history, factors, error)
+      call prepare(self, self%profile, d, history, factors, error)
    end subroutine prepare_motion
+
+   !> Makes a matrix ready; books what that takes.
+   subroutine prepare(self, profile, d, history, factors, error)
+      type(system_type), intent(inout) :: self
+      type(profile_type), intent(in) :: profile
+      real(wp), intent(in) :: d(:), history(:), factors(3)
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: seconds
+      integer(int64) :: n_assembled
+      integer :: outer
+
+      call enter(self%cost, phase_elements, outer)
+      seconds = self%matrices%factor_seconds
+      n_assembled = self%matrices%n_assembled
+      call self%matrices%prepare(self%structure, profile, d, history, factors, error)
+      call charge(self%cost, phase_factor, self%matrices%factor_seconds - seconds)
+      self%cost%element_updates = self%cost%element_updates + self%matrices%n_assembled &
+            - n_assembled
+      call leave(self%cost, outer)
+   end subroutine prepare
 
    !> Motion of the freedoms (acceleration, or displacement in a static step) under forces on them,
    !> with the matrix last prepared.
@@ -187,9 +252,12 @@ contains
       real(wp), intent(in) :: force(:)           !! (n_freedoms)
       real(wp) :: motion(size(force))
       real(wp) :: b(self%structure%map%n_eq)
+      integer :: outer
 
       b = reduce(self%structure%map, force)
+      call enter(self%cost, phase_solve, outer)
       call self%matrices%solve(b)
+      call leave(self%cost, outer)
       motion = expand(self%structure%map, b)
    end function solve_motion
 
@@ -197,19 +265,18 @@ contains
    subroutine prepare_mass(self, error)
       type(system_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error
+      real(wp), parameter :: mass_alone(3) = [1.0_wp, 0.0_wp, 0.0_wp]
       real(wp) :: d(self%structure%map%n_freedoms), history(self%structure%n_history)
       type(profile_type) :: diagonal
 
       d = 0.0_wp
       history = 0.0_wp
       if (self%structure%has_consistent_mass .or. size(self%structure%map%dependent) > 0) then
-         call self%matrices%prepare(self%structure, self%profile, d, history, &
-               [1.0_wp, 0.0_wp, 0.0_wp], error)
+         call prepare(self, self%profile, d, history, mass_alone, error)
       else
          ! lumped mass couples nothing
          call new_profile(diagonal, self%profile%n)
-         call self%matrices%prepare(self%structure, diagonal, d, history, &
-               [1.0_wp, 0.0_wp, 0.0_wp], error)
+         call prepare(self, diagonal, d, history, mass_alone, error)
       end if
    end subroutine prepare_mass
 
@@ -219,10 +286,13 @@ contains
       real(wp), intent(in) :: force(:)           !! (n_freedoms)
       real(wp) :: motion(size(force))
       real(wp) :: b(self%structure%map%n_eq)
+      integer :: outer
 
       b = reduce(self%structure%map, force)
       where (self%massless) b = 0.0_wp
+      call enter(self%cost, phase_solve, outer)
       call self%matrices%solve(b)
+      call leave(self%cost, outer)
       motion = expand(self%structure%map, b)
    end function solve_mass
 
@@ -232,14 +302,16 @@ contains
       logical, intent(in) :: on_mass
       real(wp), intent(inout) :: forces(:, :)    !! (n_freedoms, n), then the motions
       real(wp), allocatable :: b(:, :)
-      integer :: j
+      integer :: j, outer
 
       allocate (b(self%structure%map%n_eq, size(forces, 2)))
       do j = 1, size(b, 2)
          b(:, j) = reduce(self%structure%map, forces(:, j))
          if (on_mass) where (self%massless) b(:, j) = 0.0_wp
       end do
+      call enter(self%cost, phase_solve, outer)
       call self%matrices%solve_many(b)
+      call leave(self%cost, outer)
       do j = 1, size(b, 2)
          forces(:, j) = expand(self%structure%map, b(:, j))
       end do

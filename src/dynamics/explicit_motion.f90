@@ -7,8 +7,9 @@ module explicit_motion
    use structure, only: elastic_force, damping_force
    use external_load, only: load_at
    use prescribed_motion, only: are_at_rest
-   use motion_state, only: state_type
-   use equation_of_motion, only: system_type
+   use motion_state, only: state_type, exchange
+   use cost_account, only: enter, leave, phase_elements
+   use equation_of_motion, only: system_type, count_updates
    use energy_ledger, only: ledger_type, record_found
    implicit none
    private
@@ -92,6 +93,7 @@ contains
       type(state_type), intent(inout) :: state
       real(wp), intent(in) :: dt
       real(wp) :: energy(3), work, lost
+      integer :: outer
 
       work = 0.0_wp
       lost = 0.0_wp
@@ -100,16 +102,18 @@ contains
       if (size(self%load) > 0) call load_increment(self, system, state, dt, work)
       call predict(dt, system%newmark%gamma, state, self%force)
       energy = 0.0_wp
+      call enter(system%cost, phase_elements, outer)
+      call count_updates(system, scheme_explicit)
       call elastic_force(system%structure, scheme_explicit, state%d, state%history, self%force, &
             self%history, energy(2:3))
-      call swap(state%history, self%history)
+      call exchange(state%history, self%history)
       if (self%damped) call damping_force(system%structure, scheme_explicit, state%v, self%force)
+      call leave(system%cost, outer)
       if (size(self%load) > 0) self%force = self%force - self%load
       call correct(self%inverse, system%structure%lumped_mass, self%force, &
             system%newmark%gamma*dt, state, energy(1))
       if (self%damped) call add_damping_work(self, system, state%v, lost)
       state%t = state%t + dt
-      system%matrices%n_solves = system%matrices%n_solves + 1
       call record_found(ledger, work, lost, energy)
    end subroutine advance_explicitly
 
@@ -138,15 +142,6 @@ contains
       call damping_force(system%structure, scheme_explicit, v, self%force)
       lost = lost + dot_product(self%change, self%force)/2.0_wp
    end subroutine add_damping_work
-
-   pure subroutine swap(a, b)
-      real(wp), allocatable, intent(inout) :: a(:), b(:)
-      real(wp), allocatable :: kept(:)
-
-      call move_alloc(a, kept)
-      call move_alloc(b, a)
-      call move_alloc(kept, b)
-   end subroutine swap
 
    !> d and v go to their predictors, the force to zero.
    subroutine predict(dt, gamma, state, force)

@@ -4,7 +4,8 @@ module motion_state
    implicit none
    private
 
-   public :: state_type, newmark_type, predict, correct
+   public :: state_type, newmark_type, predict, hold, correct
+   public :: copy_state, exchange_states, exchange
 
    !> Motion of all freedoms at total time t.
    type :: state_type
@@ -28,7 +29,7 @@ contains
       type(newmark_type), intent(in) :: newmark
       type(state_type), intent(in) :: state
       real(wp), intent(in) :: dt
-      type(state_type), intent(out) :: trial
+      type(state_type), intent(inout) :: trial    !! its arrays are used again
 
       trial%t = state%t + dt
       trial%d = state%d + dt*state%v + dt**2/2.0_wp*(1.0_wp - 2.0_wp*newmark%beta)*state%a
@@ -36,6 +37,24 @@ contains
       trial%a = 0.0_wp*state%a
       trial%history = state%history
    end subroutine predict
+
+   !> Freedoms that stay where they are, with the velocity and acceleration that Newmark's rule has
+   !> for it: a = -v/(beta h) - (1/(2 beta) - 1) a0. beta > 0.
+   pure subroutine hold(newmark, state, dt, held, trial)
+      type(newmark_type), intent(in) :: newmark
+      type(state_type), intent(in) :: state       !! at the start of the step
+      real(wp), intent(in) :: dt
+      logical, intent(in) :: held(:)              !! (n_freedoms)
+      type(state_type), intent(inout) :: trial    !! from `predict`
+
+      associate (gamma => newmark%gamma, beta => newmark%beta)
+         where (held)
+            trial%d = state%d
+            trial%v = (1.0_wp - gamma/beta)*state%v + dt*(1.0_wp - gamma/(2.0_wp*beta))*state%a
+            trial%a = -state%v/(beta*dt) - (1.0_wp/(2.0_wp*beta) - 1.0_wp)*state%a
+         end where
+      end associate
+   end subroutine hold
 
    !> d = d~ + beta h^2 a,  v = v~ + gamma h a, for a change of the acceleration.
    pure subroutine correct(newmark, dt, delta_a, trial)
@@ -48,5 +67,41 @@ contains
       trial%v = trial%v + newmark%gamma*dt*delta_a
       trial%d = trial%d + newmark%beta*dt**2*delta_a
    end subroutine correct
+
+   !> Copies a state into the arrays of another, where it has them.
+   pure subroutine copy_state(from, to)
+      type(state_type), intent(in) :: from
+      type(state_type), intent(inout) :: to
+
+      to%t = from%t
+      to%d = from%d
+      to%v = from%v
+      to%a = from%a
+      to%history = from%history
+   end subroutine copy_state
+
+   !> Exchanges two states; nothing is copied.
+   pure subroutine exchange_states(one, other)
+      type(state_type), intent(inout) :: one, other
+      real(wp) :: t
+
+      t = one%t
+      one%t = other%t
+      other%t = t
+      call exchange(one%d, other%d)
+      call exchange(one%v, other%v)
+      call exchange(one%a, other%a)
+      call exchange(one%history, other%history)
+   end subroutine exchange_states
+
+   !> Exchanges two arrays.
+   pure subroutine exchange(one, other)
+      real(wp), allocatable, intent(inout) :: one(:), other(:)
+      real(wp), allocatable :: kept(:)
+
+      call move_alloc(one, kept)
+      call move_alloc(other, one)
+      call move_alloc(kept, other)
+   end subroutine exchange
 
 end module motion_state

@@ -14,7 +14,7 @@ contains
    !> R = M a + C v + S(d) - f - contact at prescribed freedoms, zero elsewhere; what dependent
    !> freedoms need comes through the masters they follow.
    function reaction_forces(system, state, contact) result(reaction)
-      type(system_type), intent(in) :: system
+      type(system_type), intent(inout) :: system
       type(state_type), intent(in) :: state
       real(wp), intent(in) :: contact(:)         !! (n_freedoms) contact forces
       real(wp) :: reaction(size(contact))

@@ -23,6 +23,15 @@ module compliance_store
       real(wp), allocatable :: w(:, :)           !! (2 n_rows, n) of all rows
    end type shelf_type
 
+   !> Motions by unit forces in held rows, on the complex matrix of one step size.
+   type, public :: complex_columns_type
+      real(wp) :: dt = -1.0_wp
+      integer(int64) :: generation = -1          !! of the matrices
+      integer, allocatable :: rows(:)            !! (n)
+      complex(wp), allocatable :: x(:, :)        !! (n_freedoms, n)
+      complex(wp), allocatable :: w(:, :)        !! (n, n) along these rows
+   end type complex_columns_type
+
    !> The first shelf is for the mass, which no other matrix drives out.
    type :: compliance_store_type
       type(shelf_type) :: shelves(n_shelves)

@@ -2,13 +2,16 @@
 !> static problem.
 module constrained_step
    use kinds, only: wp
+   use cost_account, only: enter, leave, phase_other, phase_contact
    use errors, only: error_type, new_error, status_numerical
    use text, only: to_text
    use dof_map, only: reduce
    use motion_state, only: newmark_type, state_type, correct
-   use equation_of_motion, only: system_type, predict_motion, fixed_force, residual, &
-         solve_motion, prepare_motion, settle_massless, impose
-   use impact_scene, only: scene_type, contact_motion_type, record_residual, note_contact_force
+   use equation_of_motion, only: system_type, predict_motion, start_near, fixed_force, residual, &
+         solve_motion, prepare_motion, settle_massless
+   use impact_scene, only: scene_type, contact_motion_type, copy_contact_motion, &
+         record_residual, note_contact_force
+   use constraint_rows, only: law_motion
    use step_contact, only: contact_step_type, add_contact_forces, smallest_beta
    use row_placement, only: place_rows
    use overlap_force, only: add_overlap_force
@@ -31,7 +34,7 @@ contains
       type(contact_motion_type), intent(in) :: from
       real(wp), intent(in) :: dt
       real(wp), intent(in) :: beta
-      type(contact_motion_type), intent(out) :: to
+      type(contact_motion_type), intent(inout) :: to   !! at the end; its arrays are used again
       type(error_type), allocatable, intent(out) :: error
       logical, intent(in), optional :: held(:)   !! (n_rows) rows held bilaterally, the others free
       type(newmark_type) :: newmark
@@ -39,16 +42,17 @@ contains
       real(wp), dimension(size(from%motion%d)) :: fixed, psi, delta
       real(wp) :: reference, left
       logical :: converged
-      integer :: iteration
+      integer :: iteration, outer
 
+      call enter(scene%system%cost, phase_other, outer)
       newmark = scene%system%newmark
       newmark%beta = beta
-      to = from
+      call copy_contact_motion(from, to)
       to%jump = 0.0_wp
       to%left_out = 0.0_wp
       call predict_motion(scene%system, from%motion, dt, beta, to%motion)
       fixed = fixed_force(scene%system, from%motion, to%motion)
-      call start_at_constant_velocity(scene%system, from%motion, dt, beta, to%motion)
+      call start_near(scene%system, from%motion, dt, beta, to%motion)
       call describe_step(scene, dt, beta, step, held)
       reference = 0.0_wp
       left = huge(left)
@@ -57,9 +61,8 @@ contains
          call prepare_motion(scene%system, dt, beta, to%motion%d, from%motion%history, error)
          if (allocated(error)) return
          delta = solve_motion(scene%system, psi)
-         call add_contact_forces(scene, step, from, to, delta, error)
-         if (allocated(error)) return
-         if (scene%settings%iterated) call add_overlap_force(scene, beta*dt**2, to, delta, error)
+         if (may_push(scene, step, to)) call push_apart(scene, step, beta*dt**2, from, to, delta, &
+               error)
          if (allocated(error)) return
          call correct(newmark, dt, delta, to%motion)
          call note_contact_force(scene, to)
@@ -72,26 +75,45 @@ contains
       end do
       if (.not. converged) call not_converged(scene, to%motion%t, error)
       call settle_massless(scene%system, from%motion, to%motion)
+      call leave(scene%system%cost, outer)
    end subroutine advance_smoothly
 
-   !> A stiff linear step starts its solution from d0 + h v0, a = (1 - 1/(2 beta)) a0, instead of
-   !> d~ and a = 0. With omega h large d~ is some (omega h)^2/4 times the displacement, and most of it
-   !> cancels in d1 = d~ + beta h^2 a1: of the energy of a mode (omega h)^2/4 round-offs were lost,
-   !> 6e-5 at omega h = 1e6. So it is omega h of them. (With beta below 1/4 no such step is stable.)
-   subroutine start_at_constant_velocity(system, from, dt, beta, trial)
-      type(system_type), intent(in) :: system
-      type(state_type), intent(in) :: from
-      real(wp), intent(in) :: dt, beta
-      type(state_type), intent(inout) :: trial   !! the predictor, explicit forces taken
-      real(wp), parameter :: stiff = 100.0_wp
+   !> Whether contact forces may act in a step: rows whose law speaks of the motion alone have none
+   !> unless they touch. Without any the forces of the motion are zero.
+   function may_push(scene, step, to) result(may)
+      type(scene_type), intent(in) :: scene
+      type(contact_step_type), intent(in) :: step
+      type(contact_motion_type), intent(inout) :: to
+      logical :: may
 
-      if (beta < 0.25_wp .or. system%omega_max(1)*dt < stiff) return
-      if (.not. system%structure%is_linear) return
-      trial%a = (1.0_wp - 0.5_wp/beta)*from%a
-      trial%v = from%v + dt*((1.0_wp - system%newmark%gamma)*from%a + system%newmark%gamma*trial%a)
-      trial%d = from%d + dt*from%v
-      call impose(system, trial)
-   end subroutine start_at_constant_velocity
+      may = scene%rows%n > 0
+      if (.not. may .or. any(scene%rows%law /= law_motion)) return
+      may = any(to%touching)
+      if (allocated(step%held)) may = any(step%held)
+      if (may) return
+      to%lambda = 0.0_wp
+      to%tau = 0.0_wp
+      to%sticking = .false.
+   end function may_push
+
+   !> Adds to the motion what contact forces of all kinds do.
+   subroutine push_apart(scene, step, beta_dt2, from, to, delta, error)
+      type(scene_type), intent(inout) :: scene
+      type(contact_step_type), intent(in) :: step
+      real(wp), intent(in) :: beta_dt2           !! beta h^2
+      type(contact_motion_type), intent(in) :: from
+      type(contact_motion_type), intent(inout) :: to
+      real(wp), intent(inout) :: delta(:)
+      type(error_type), allocatable, intent(out) :: error
+      integer :: outer
+
+      call enter(scene%system%cost, phase_contact, outer)
+      call add_contact_forces(scene, step, from, to, delta, error)
+      if (allocated(error)) return
+      if (scene%settings%iterated) call add_overlap_force(scene, beta_dt2, to, delta, error)
+      if (allocated(error)) return
+      call leave(scene%system%cost, outer)
+   end subroutine push_apart
 
    !> What contact needs to know of a dynamic step.
    subroutine describe_step(scene, dt, beta, step, held)
@@ -110,7 +132,7 @@ contains
    !> correction is small and the residual has come down to round-off: it falls no further. Nearly
    !> incompressible solids have such round-off above the tolerance.
    function has_converged(scene, fixed, from, to, delta, reference, left) result(converged)
-      type(scene_type), intent(in) :: scene
+      type(scene_type), intent(inout) :: scene
       real(wp), intent(in) :: fixed(:), delta(:), reference
       type(contact_motion_type), intent(in) :: from
       type(contact_motion_type), intent(inout) :: to   !! gets the history at its displacements
@@ -200,12 +222,13 @@ contains
    !> recover. So their jump is taken as linear, by a difference backwards, where what yields is
    !> elastic as the stiffness at the start is.
    function first_residual(system, fixed, from, ahead) result(psi)
-      type(system_type), intent(in) :: system
+      type(system_type), intent(inout) :: system
       real(wp), intent(in) :: fixed(:)
       type(state_type), intent(in) :: from
       real(wp), intent(in) :: ahead(:)           !! displacements, the prescribed ones moved on
       real(wp) :: psi(size(fixed))
       real(wp), parameter :: part = 1.0e-6_wp
+      real(wp) :: psi_behind(size(fixed))
       type(state_type) :: start, behind
 
       start = from
@@ -213,7 +236,8 @@ contains
       if (all(abs(ahead - from%d) <= 0.0_wp)) return
       behind = from
       behind%d = from%d - part*(ahead - from%d)
-      psi = psi - (residual(system, fixed, from%history, behind) - psi)/part
+      psi_behind = residual(system, fixed, from%history, behind)
+      psi = psi - (psi_behind - psi)/part
    end function first_residual
 
 end module constrained_step

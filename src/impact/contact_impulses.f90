@@ -3,6 +3,7 @@
 module contact_impulses
    use kinds, only: wp
    use errors, only: error_type, new_error, status_numerical
+   use text, only: to_text
    use complementarity, only: solve_complementarity, solve_equality
    use mesh, only: scheme_implicit, scheme_explicit
    use motion_state, only: state_type
@@ -15,9 +16,11 @@ module contact_impulses
    use constraint_rows, only: row_gaps, row_rates, row_accelerations, row_curvature, slip_rates, &
          slip_products, rate_size, gap_size, wall_rates, contact_forces, sticks, &
          law_penalty
-   use impact_scene, only: scene_type, contact_motion_type, note_contact_force, gap_tolerance
+   use impact_scene, only: scene_type, contact_motion_type, note_contact_force, gap_tolerance, &
+         merge_gap_tolerance
    use row_compliance, only: compliance_type, mass_compliance, pushed, join_rates, split_forces
    use rough_rows, only: solve_rows
+   use contact_room, only: no_room
    implicit none
    private
 
@@ -136,7 +139,7 @@ contains
          call solve_rows(compliance%w, q, scene%rows%friction(compliance%rows), &
                held(compliance%rows), forces, solved, sense(compliance%rows))
          if (.not. solved) then
-            call dependent_impulses(error)
+            call dependent_impulses(scene, motion%motion%t, compliance, error)
             return
          end if
          call split_forces(compliance, forces, motion%lambda, motion%tau)
@@ -203,7 +206,7 @@ contains
       call solve_complementarity(compliance%w, rates(compliance%rows) &
             - matmul(compliance%w, available(compliance%rows)), p, solved)
       if (.not. solved) then
-         call dependent_impulses(error)
+         call dependent_impulses(scene, motion%motion%t, compliance, error)
          return
       end if
       impulse = 0.0_wp
@@ -226,10 +229,11 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(compliance_type) :: compliance
       real(wp), dimension(scene%rows%n) :: gaps, rates, impulse
-      real(wp) :: p(count(motion%touching))
+      real(wp) :: p(count(motion%touching)), length
       logical :: solved
 
       if (.not. any(motion%touching)) return
+      length = max(gap_size(scene%rows, motion%motion, scene%dt), scene%geometry%size)
       gaps = gaps_to_close(scene, motion)
       rates = merge(row_rates(scene%rows, motion%motion), 0.0_wp, motion%touching)
       if (maxval(abs(gaps)) <= gap_limit .and. maxval(abs(rates)) <= rate_limit) return
@@ -238,11 +242,31 @@ contains
       if (maxval(abs(gaps)) > gap_limit) then
          call solve_equality(compliance%w, gaps(compliance%rows), p, solved)
          call shift(scene, motion, pushed(scene, compliance, p))
+         call check_room(scene, motion, length, error)
+         if (allocated(error)) return
       end if
       if (maxval(abs(rates)) <= rate_limit) return
       rates = 0.0_wp
       call set_rates(scene, motion, motion%touching, rates, impulse, error)
    end subroutine project_touching
+
+   !> Rows that no motion can open together, as of a mass between two walls that have met, leave an
+   !> overlap: the motion cannot go on. (Gaps of bodies that slide on each other are not exact.)
+   subroutine check_room(scene, motion, length, error)
+      type(scene_type), intent(in) :: scene
+      type(contact_motion_type), intent(in) :: motion
+      real(wp), intent(in) :: length             !! what round-off of gaps is relative to
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: gaps(scene%rows%n), limit
+      integer :: worst
+
+      gaps = gaps_to_close(scene, motion)
+      worst = minloc(gaps, dim=1)
+      limit = merge_gap_tolerance*length
+      if (scene%rows%moving) limit = largest_shift*length
+      if (gaps(worst) >= -limit) return
+      call no_room(scene%rows%node_id(worst), motion%motion%t, -gaps(worst), error)
+   end subroutine check_room
 
    !> Gaps of touching rows that are to be zero.
    function gaps_to_close(scene, motion) result(gaps)
@@ -306,7 +330,7 @@ contains
       call solve_equality(compliance%w, before(compliance%rows) - target_rate(compliance%rows), p, &
             solved)
       if (.not. solved) then
-         call dependent_impulses(error)
+         call dependent_impulses(scene, motion%motion%t, compliance, error)
          return
       end if
       v_before = motion%motion%v
@@ -359,13 +383,27 @@ contains
       call record_impact(scene%ledger, 0.0_wp, dot_product(reaction, motion%motion%v))
    end subroutine book_reactions
 
-   subroutine dependent_impulses(error)
+   !> Impulses that do not exist, or are not the only ones.
+   subroutine dependent_impulses(scene, t, compliance, error)
+      type(scene_type), intent(in) :: scene
+      real(wp), intent(in) :: t
+      type(compliance_type), intent(in) :: compliance   !! of the mass
       type(error_type), allocatable, intent(out) :: error
+      integer, parameter :: most_named = 5
+      character(len=:), allocatable :: nodes
+      integer :: i
 
+      nodes = ''
+      do i = 1, min(compliance%n, most_named)
+         if (i > 1) nodes = nodes//', '
+         nodes = nodes//to_text(scene%rows%node_id(compliance%rows(i)))
+      end do
+      if (compliance%n > most_named) nodes = nodes//', ...'
       call new_error(error, status_numerical, &
-            'an impact has no answer: a contact row has no mass '// &
-            'behind it, or rows depend on each other'//new_line('a')// &
-            '  cure: give every contact node a mass, and let none touch the same wall twice')
+            'an impact at time '//to_text(t)//' has no answer: of the contact rows of node '// &
+            nodes//' one has no mass behind it, or they depend on each other'//new_line('a')// &
+            '  cure: give every contact node a mass, let none touch the same wall twice, '// &
+            'and hold none along the normal')
    end subroutine dependent_impulses
 
 end module contact_impulses

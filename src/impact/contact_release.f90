@@ -35,13 +35,15 @@ module contact_release
 contains
 
    !> The smooth motion ahead: over all that remains, or up to the first release of a touching row.
-   !> A row that opens at once is let go here (`span%dt` zero: begin again).
+   !> A row that opens at once is let go here (`span%dt` zero: begin again). At the limit of events
+   !> all rows that touch are held to the end of the step, so that each can be captured but once:
+   !> let go, one might be back under the wall before the next event is found.
    subroutine smooth_span(scene, motion, progress, span, next, release, error)
       type(scene_type), intent(inout) :: scene
       type(contact_motion_type), intent(inout) :: motion
       type(progress_type), intent(inout) :: progress
       type(span_type), intent(out) :: span
-      type(contact_motion_type), intent(out) :: next
+      type(contact_motion_type), intent(inout) :: next   !! gets the end; its arrays are used again
       logical, intent(out) :: release(:)         !! (n_rows) rows to let go at the end of the span
       type(error_type), allocatable, intent(out) :: error
       logical :: opening(size(release))
@@ -55,17 +57,15 @@ contains
       if (scene%rows%moving) span%found_limit = 10.0_wp*span%gap_limit
       span%rate_limit = rate_tolerance*rate_size(scene%rows, motion%motion)
       release = .false.
-      if (any(progress%stubborn)) then
+      if (any(progress%stubborn) .or. progress%at_limit) then
          call advance_smoothly(scene, motion, span%dt, span%beta, next, error, motion%touching)
       else
          call advance_smoothly(scene, motion, span%dt, span%beta, next, error)
       end if
-      if (allocated(error) .or. .not. any(motion%touching)) return
+      if (allocated(error) .or. progress%at_limit .or. .not. any(motion%touching)) return
       opening = opening_rows(scene, motion, next) .and. .not. progress%stubborn
       span%held = motion%touching .and. .not. opening
-      if (progress%at_limit) then
-         release = opening
-      else if (any(opening)) then
+      if (any(opening)) then
          call cut_at_release(scene, motion, opening, progress, span, next, release, error)
       end if
    end subroutine smooth_span

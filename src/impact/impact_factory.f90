@@ -13,6 +13,7 @@ module impact_factory
    use impact_method, only: impact_method_type
    use no_impact, only: no_impact_type
    use transformation, only: transformation_type
+   use fourth_order_impacts, only: fourth_order_type
    use anchored_impacts, only: anchored_type
    use fictitious_force, only: fictitious_force_type
    use penalty_method, only: penalty_method_type
@@ -35,8 +36,14 @@ contains
       type(interaction_type) :: first
       integer :: i
 
+      settings%fourth_order = any(model%steps%procedure == procedure_dynamic .and. &
+            model%steps%order == 4)
       if (size(list%rows) == 0) then
-         allocate (no_impact_type :: method)
+         if (settings%fourth_order) then
+            allocate (fourth_order_type :: method)
+         else
+            allocate (no_impact_type :: method)
+         end if
          return
       end if
       first = model%interactions(list%rows(1)%interaction)
@@ -67,7 +74,9 @@ contains
       case (method_lagrange)
          allocate (lagrange_multiplier_type :: method)
       case default
-         if (settings%anchored) then
+         if (settings%fourth_order) then
+            allocate (fourth_order_type :: method)
+         else if (settings%anchored) then
             allocate (anchored_type :: method)
          else
             allocate (transformation_type :: method)

@@ -7,6 +7,7 @@ module overlap_force
    use constraint_rows, only: row_gaps, row_accelerations, gap_size, law_overlap
    use impact_scene, only: scene_type, contact_motion_type, gap_tolerance
    use row_compliance, only: compliance_type, find_compliance, unit_motions
+   use contact_room, only: no_room, room_tolerance
    implicit none
    private
 
@@ -53,6 +54,8 @@ contains
          call find_overlap(scene, beta_dt2, to, overlapping, overlap, error)
          if (allocated(error)) return
          call find_forces(scene, overlap%w, free_gaps(overlap%rows), lambda, error)
+         if (allocated(error)) return
+         call check_room(scene, overlap, free_gaps(overlap%rows), lambda, to%motion%t, error)
          if (allocated(error)) return
          gaps = free_gaps + beta_dt2*row_accelerations(scene%rows, matmul(overlap%x, lambda))
       end do
@@ -115,6 +118,23 @@ contains
       call solve_complementarity((1.0_wp + alpha)/alpha*w, free_gaps, lambda, solved)
       if (.not. solved) call no_compliance(error)
    end subroutine find_forces
+
+   !> Rows that no motion can open together have no such forces.
+   subroutine check_room(scene, overlap, free_gaps, lambda, t, error)
+      type(scene_type), intent(in) :: scene
+      type(overlap_type), intent(in) :: overlap
+      real(wp), intent(in) :: free_gaps(:), lambda(:)
+      real(wp), intent(in) :: t
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: missing(size(lambda)), alpha
+      integer :: worst
+
+      alpha = scene%settings%return_parameter
+      missing = free_gaps + (1.0_wp + alpha)/alpha*matmul(overlap%w, lambda)
+      worst = minloc(missing, dim=1)
+      if (missing(worst) >= -room_tolerance*maxval(abs(free_gaps))) return
+      call no_room(scene%rows%node_id(overlap%rows(worst)), t, -missing(worst), error)
+   end subroutine check_room
 
    !> P from the overlap of the iteration at hand alone: lambda = W^-1 alpha (-g) on the rows with
    !> g < 0, then g = g_free + W lambda. Each round leaves alpha times the distance to the end.

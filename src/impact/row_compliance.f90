@@ -65,6 +65,7 @@ contains
       integer :: j, n
 
       n = size(rows)
+      scene%system%cost%contact_rows = scene%system%cost%contact_rows + n
       compliance%n = n
       compliance%rows = rows
       compliance%rough = pack(rough, spread(any(rough), 1, n))

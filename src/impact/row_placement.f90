@@ -19,7 +19,7 @@ module row_placement
    implicit none
    private
 
-   public :: new_rows, place_rows, nodal_displacements
+   public :: new_rows, place_rows, nodal_displacements, row_law
 
 contains
 
@@ -83,19 +83,27 @@ contains
          self%massless(i) = .false.
          if (list%rows(i)%model_pair > 0) self%massless(i) &
                = model%pairs(list%rows(i)%model_pair)%redistributed
-         select case (interaction%method)
-         case (method_fictitious_force)
-            self%law(i) = merge(law_closed, law_overlap, self%massless(i))
-         case (method_penalty)
-            self%law(i) = law_penalty
-         case (method_lagrange)
-            self%law(i) = law_closed
-         case default
-            ! a contact node without mass has no velocity to jump
-            self%law(i) = merge(law_closed, law_motion, self%massless(i))
-         end select
+         self%law(i) = row_law(interaction%method, self%massless(i))
       end do
    end subroutine copy_behaviour
+
+   !> How contact forces follow in a row; a contact node without mass has no velocity to jump.
+   pure function row_law(method, massless) result(law)
+      integer, intent(in) :: method              !! of the row's interaction
+      logical, intent(in) :: massless
+      integer :: law
+
+      select case (method)
+      case (method_fictitious_force)
+         law = merge(law_closed, law_overlap, massless)
+      case (method_penalty)
+         law = law_penalty
+      case (method_lagrange)
+         law = law_closed
+      case default
+         law = merge(law_closed, law_motion, massless)
+      end select
+   end function row_law
 
    !> The motion of a wall along the row's normal and tangent.
    pure subroutine set_wall_motion(self, i)

@@ -6,8 +6,8 @@ module transformation
    use errors, only: error_type
    use surfaces, only: beta_given
    use constraint_rows, only: row_gaps
-   use impact_scene, only: scene_type, contact_motion_type, accept_span, gap_tolerance, &
-         merge_gap_tolerance, merge_time_tolerance
+   use impact_scene, only: scene_type, contact_motion_type, accept_span, exchange_motions, &
+         gap_tolerance, merge_gap_tolerance, merge_time_tolerance
    use impact_method, only: impact_method_type
    use constrained_step, only: advance_smoothly
    use contact_release, only: progress_type, smooth_span, release_rows, note_return
@@ -80,6 +80,7 @@ contains
       allocate (progress%stubborn(scene%rows%n), progress%ignored(scene%rows%n), source=.false.)
       gaps = row_gaps(scene%rows, motion%motion)
       aim = .true.
+      call exchange_motions(scene%spare, next)
       do while (progress%remaining > time_tolerance*dt)
          if (aim) call rows_ahead(scene, motion, progress%remaining, error)
          if (allocated(error)) return
@@ -107,6 +108,7 @@ contains
             gaps = row_gaps(scene%rows, motion%motion)
          end if
       end do
+      call exchange_motions(scene%spare, next)
       motion%motion%t = progress%t_end
       call settle_rows(scene, motion, dt, error)
    end subroutine advance
@@ -115,18 +117,16 @@ contains
    subroutine take_span(scene, motion, next, dt, span, progress, error)
       type(scene_type), intent(inout) :: scene
       type(contact_motion_type), intent(inout) :: motion
-      type(contact_motion_type), intent(in) :: next
+      type(contact_motion_type), intent(inout) :: next   !! then where the motion was before
       real(wp), intent(in) :: dt                 !! from motion to next
       type(span_type), intent(in) :: span
       type(progress_type), intent(inout) :: progress
       type(error_type), allocatable, intent(out) :: error
-      type(contact_motion_type) :: from
 
       progress%remaining = progress%remaining - dt
-      from = motion
-      motion = next
-      call accept_span(scene, from, motion)
-      call settle_span(scene, from, motion, span, progress, error)
+      call exchange_motions(motion, next)
+      call accept_span(scene, next, motion)
+      call settle_span(scene, next, motion, span, progress, error)
    end subroutine take_span
 
    !> Goes to the earliest impact of the span and jumps there.

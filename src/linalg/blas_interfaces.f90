@@ -5,6 +5,7 @@ module blas_interfaces
    private
 
    public :: ddot, daxpy, dgemv, dgemm, dtrsm, dgesv, dposv, dsygv
+   public :: zdotu, zaxpy, zgesv
 
    interface
       pure function ddot(n, x, incx, y, incy) result(dot)
@@ -76,6 +77,30 @@ module blas_interfaces
          real(wp), intent(out) :: w(*), work(*)
          integer, intent(out) :: info
       end subroutine dsygv
+
+      pure function zdotu(n, x, incx, y, incy) result(dot)
+         import :: wp
+         implicit none
+         integer, intent(in) :: n, incx, incy
+         complex(wp), intent(in) :: x(*), y(*)
+         complex(wp) :: dot
+      end function zdotu
+
+      pure subroutine zaxpy(n, alpha, x, incx, y, incy)
+         import :: wp
+         implicit none
+         integer, intent(in) :: n, incx, incy
+         complex(wp), intent(in) :: alpha, x(*)
+         complex(wp), intent(inout) :: y(*)
+      end subroutine zaxpy
+
+      pure subroutine zgesv(n, nrhs, a, lda, pivots, b, ldb, info)
+         import :: wp
+         implicit none
+         integer, intent(in) :: n, nrhs, lda, ldb
+         complex(wp), intent(inout) :: a(lda, *), b(ldb, *)
+         integer, intent(out) :: pivots(*), info
+      end subroutine zgesv
    end interface
 
 end module blas_interfaces

@@ -1,11 +1,11 @@
 !> Small dense systems of equations by LU factors.
 module square_systems
    use kinds, only: wp
-   use blas_interfaces, only: dgesv
+   use blas_interfaces, only: dgesv, zgesv
    implicit none
    private
 
-   public :: solve_square
+   public :: solve_square, solve_complex_square
 
    !> A pivot below this part of the matrix's largest entry means that rows depend on each other.
    real(wp), parameter :: pivot_tolerance = 1.0e-13_wp
@@ -69,5 +69,24 @@ contains
       solved = least > pivot_tolerance*maxval(abs(matrix))
       if (solved) rhs = x
    end subroutine solve_shifted
+
+   !> Solves a complex matrix x = rhs; `solved` is false if its rows depend on each other.
+   pure subroutine solve_complex_square(matrix, rhs, solved)
+      complex(wp), intent(in) :: matrix(:, :)    !! (n, n)
+      complex(wp), intent(inout) :: rhs(:)       !! right-hand side, then x
+      logical, intent(out) :: solved
+      complex(wp) :: factor(size(rhs), size(rhs)), x(size(rhs), 1)
+      integer :: pivots(size(rhs)), i, info
+
+      solved = .true.
+      if (size(rhs) == 0) return
+      factor = matrix
+      x(:, 1) = rhs
+      call zgesv(size(rhs), 1, factor, size(rhs), pivots, x, size(rhs), info)
+      solved = info == 0
+      if (.not. solved) return
+      solved = minval([(abs(factor(i, i)), i=1, size(rhs))]) > pivot_tolerance*maxval(abs(matrix))
+      if (solved) rhs = x(:, 1)
+   end subroutine solve_complex_square
 
 end module square_systems

@@ -6,6 +6,7 @@ module amplitude_value
    private
 
    public :: amplitude_at, amplitude_slope, amplitude_integral, amplitude_second_integral
+   public :: next_corner
 
 contains
 
@@ -66,7 +67,7 @@ contains
       second = 0.0_wp
       from = 0.0_wp
       do while (from < t)
-         to = min(t, next_time(amplitude%t, from))
+         to = min(t, next_corner(amplitude%t, from))
          length = to - from
          a = amplitude_at(amplitude, from)
          slope = amplitude_slope(amplitude, from)
@@ -76,7 +77,8 @@ contains
       end do
    end subroutine integrate
 
-   pure function next_time(times, t) result(next)
+   !> The first of the times after t, huge if there is none.
+   pure function next_corner(times, t) result(next)
       real(wp), intent(in) :: times(:), t
       real(wp) :: next
       integer :: i
@@ -84,7 +86,7 @@ contains
       next = huge(next)
       i = interval(times, t) + 1
       if (i <= size(times)) next = times(i)
-   end function next_time
+   end function next_corner
 
    !> The last i with times(i) <= t, 0 before the first.
    pure function interval(times, t) result(low)

@@ -66,6 +66,7 @@ module steps
       integer :: max_increments = 0              !! INC, 0: no limit
       logical :: direct = .false.                !! fixed increments
       logical :: explicit = .false.              !! every group explicit in this step
+      integer :: order = 2                       !! 4: Gauss' method instead of Newmark's
       real(wp) :: gamma = 0.5_wp                 !! Newmark
       real(wp) :: beta = 0.25_wp
       real(wp) :: alpha = 0.0_wp                 !! HHT, -1/3 to 0
@@ -90,6 +91,7 @@ module steps
       type(place_type) :: place                  !! of `*STEP`
       type(place_type) :: procedure_place        !! of `*DYNAMIC` or `*STATIC`
       type(place_type) :: solver_place           !! of SOLVER, if given
+      type(place_type) :: order_place            !! of ORDER, if given
       type(place_type) :: time_place             !! of the line with dt, T
    end type step_type
 

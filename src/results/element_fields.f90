@@ -69,7 +69,7 @@ contains
    subroutine set_element_fields(self, grid, scene, snapshot)
       type(element_fields_type), intent(in) :: self
       type(vtkhdf_grid_type), intent(inout) :: grid
-      type(scene_type), intent(in) :: scene
+      type(scene_type), intent(inout) :: scene
       type(snapshot_type), intent(in) :: snapshot
       real(wp), allocatable :: cells(:, :), points(:, :)
       integer, allocatable :: n_meeting(:)
@@ -97,7 +97,7 @@ contains
    end subroutine set_element_fields
 
    subroutine add_group(scene, g, snapshot, cells, points, n_meeting)
-      type(scene_type), intent(in) :: scene
+      type(scene_type), intent(inout) :: scene
       integer, intent(in) :: g
       type(snapshot_type), intent(in) :: snapshot
       real(wp), intent(inout) :: cells(:, :)     !! (n_recovered, n_elements)

@@ -65,7 +65,7 @@ contains
    subroutine record_energies(table, file, scene, motion, error)
       type(column_table_type), intent(inout) :: table
       type(hdf5_file_type), intent(in) :: file
-      type(scene_type), intent(in) :: scene
+      type(scene_type), intent(inout) :: scene
       type(contact_motion_type), intent(in) :: motion
       type(error_type), allocatable, intent(out) :: error
       real(wp), allocatable :: row(:)

@@ -118,14 +118,14 @@ contains
 
       i = findloc(nodal, q, dim=1)
       call self%grid%add_point_field(file, trim(names(i)), n_components(i), trim(meanings(i)), &
-            self%field(q), error)
+            self%field(q), error, partial=q == quantity_cdis)
    end subroutine add_field
 
    !> Appends a frame.
    subroutine record_frame(self, file, scene, list, snapshot, error)
       type(grid_type), intent(inout) :: self
       type(hdf5_file_type), intent(in) :: file
-      type(scene_type), intent(in) :: scene
+      type(scene_type), intent(inout) :: scene
       type(contact_pair_list_type), intent(in) :: list
       type(snapshot_type), intent(in) :: snapshot
       type(error_type), allocatable, intent(out) :: error

@@ -208,7 +208,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(column_type), allocatable :: longer(:)
 
-      call self%table%add_column(file, path, description, error)
+      call self%table%add_column(file, path, description, error, &
+            partial=column%quantity == quantity_cdis)
       if (allocated(error)) return
       if (self%n == size(self%columns)) then
          allocate (longer(2*self%n))
@@ -223,27 +224,38 @@ contains
    subroutine record_history(self, file, scene, list, snapshot, error)
       type(history_type), intent(inout) :: self
       type(hdf5_file_type), intent(in) :: file
-      type(scene_type), intent(in) :: scene
+      type(scene_type), intent(inout) :: scene
       type(contact_pair_list_type), intent(in) :: list
       type(snapshot_type), intent(in) :: snapshot
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: row(self%n + 1)
-      integer :: i
+      real(wp) :: row(self%n + 1), recovered(n_recovered)
+      integer :: i, found(2)
 
       row(1) = snapshot%time
+      found = 0
       do i = 1, self%n
-         row(i + 1) = value_of(self%columns(i), scene, list, snapshot)
+         associate (column => self%columns(i))
+            select case (column%quantity)
+            case (quantity_s, quantity_e, quantity_ener, quantity_peeq)
+               ! columns of one element follow each other
+               if (any([column%group, column%item] /= found)) recovered = element_values(scene, &
+                     column%group, column%item, snapshot)
+               found = [column%group, column%item]
+               row(i + 1) = recovered(column%component)
+            case default
+               row(i + 1) = value_of(column, list, snapshot)
+            end select
+         end associate
       end do
       call self%table%append_row(file, row, error)
    end subroutine record_history
 
-   function value_of(column, scene, list, snapshot) result(value)
+   !> A value of a node or a pair.
+   function value_of(column, list, snapshot) result(value)
       type(column_type), intent(in) :: column
-      type(scene_type), intent(in) :: scene
       type(contact_pair_list_type), intent(in) :: list
       type(snapshot_type), intent(in) :: snapshot
       real(wp) :: value
-      real(wp) :: values(n_recovered)
 
       select case (column%quantity)
       case (quantity_u)
@@ -254,9 +266,6 @@ contains
          value = snapshot%a(column%item)
       case (quantity_rf)
          value = snapshot%rf(column%item)
-      case (quantity_s, quantity_e, quantity_ener, quantity_peeq)
-         values = element_values(scene, column%group, column%item, snapshot)
-         value = values(column%component)
       case default
          value = value_of_pair(column, list, snapshot)
       end select

@@ -18,7 +18,7 @@ contains
    !> Writes all modes, their shapes with the frequency in the place of the time.
    subroutine record_modes(self, scene, list, motion, modes, error)
       type(result_file_type), intent(inout) :: self
-      type(scene_type), intent(in) :: scene
+      type(scene_type), intent(inout) :: scene
       type(contact_pair_list_type), intent(in) :: list
       type(contact_motion_type), intent(in) :: motion   !! about which they were found
       type(modes_type), intent(in) :: modes

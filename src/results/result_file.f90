@@ -16,6 +16,8 @@ module result_file
    use equation_of_motion, only: rigid_mass
    use snapshot, only: snapshot_type, take_snapshot, on_nodes, state_stuck
    use history_recorder, only: history_type, new_history, record_history
+   use cost_account, only: enter, leave, stop_clock, phase_output
+   use cost_recorder, only: write_cost
    use energy_recorder, only: new_energies, record_energies
    use grid_recorder, only: grid_type, new_grid, record_frame
    use model_recorder, only: write_model
@@ -128,6 +130,9 @@ contains
       if (allocated(error)) return
       call self%file%set_attribute('/model', 'alpha', scene%system%newmark%alpha, error)
       if (allocated(error)) return
+      call self%file%set_attribute('/model', 'order', merge(4, 2, scene%settings%fourth_order), &
+            error)
+      if (allocated(error)) return
       call self%file%write_dataset('/model/profile', heights, &
             'column heights of the effective stiffness, diagonal included', error)
       if (allocated(error)) return
@@ -185,8 +190,8 @@ contains
       integer, intent(in) :: increment
       logical, intent(in) :: last                !! of the step
       type(error_type), allocatable, intent(out) :: error
-      type(snapshot_type) :: snapshot
       logical :: print_due, frame_due, energy_due
+      integer :: outer
 
       call record_events(self, scene, list, error)
       if (allocated(error)) return
@@ -196,15 +201,35 @@ contains
       frame_due = is_due(requests, [request_node_file, request_element_file, &
             request_contact_file], increment, last) .or. increment == 0 .or. last
       frame_due = frame_due .and. .not. self%plan%modes_only
+      if (.not. (energy_due .or. print_due .or. frame_due)) return
+      if (frame_due) then
+         call enter(scene%system%cost, phase_output, outer, .true.)
+      else
+         call enter(scene%system%cost, phase_output, outer)
+      end if
       if (energy_due) call record_energies(self%energy, self%file, scene, motion, error)
-      if (allocated(error) .or. .not. (print_due .or. frame_due)) return
+      if (.not. allocated(error) .and. (print_due .or. frame_due)) call record_state(self, scene, &
+            list, motion, [print_due, frame_due], error)
+      call leave(scene%system%cost, outer)
+   end subroutine record_increment
+
+   !> A row of the histories, a frame, or both, of the same state.
+   subroutine record_state(self, scene, list, motion, due, error)
+      type(result_file_type), intent(inout) :: self
+      type(scene_type), intent(inout) :: scene
+      type(contact_pair_list_type), intent(in) :: list
+      type(contact_motion_type), intent(in) :: motion
+      logical, intent(in) :: due(2)              !! row, frame
+      type(error_type), allocatable, intent(out) :: error
+      type(snapshot_type) :: snapshot
+
       call take_snapshot(snapshot, scene, motion, self%history%needs_reactions &
             .or. self%grid%needs_reactions)
       call measure_contact(self, scene, list, motion, snapshot)
-      if (print_due) call record_history(self%history, self%file, scene, list, snapshot, error)
+      if (due(1)) call record_history(self%history, self%file, scene, list, snapshot, error)
       if (allocated(error)) return
-      if (frame_due) call record_frame(self%grid, self%file, scene, list, snapshot, error)
-   end subroutine record_increment
+      if (due(2)) call record_frame(self%grid, self%file, scene, list, snapshot, error)
+   end subroutine record_state
 
    !> What of contact has to be computed for the records alone.
    subroutine measure_contact(self, scene, list, motion, snapshot)
@@ -286,13 +311,19 @@ contains
       call self%file%flush(error)
    end subroutine flush_results
 
-   !> Flushes and closes; called also when a run stops early.
-   subroutine close_results(self, error)
+   !> Flushes, writes what the run has cost, and closes; called also when a run stops early.
+   subroutine close_results(self, scene, error)
       type(result_file_type), intent(inout) :: self
+      type(scene_type), intent(inout) :: scene   !! its clock is stopped
       type(error_type), allocatable, intent(out) :: error
+      integer :: outer
 
-      if (.not. self%file%is_open()) return
-      call flush_results(self, error)
+      call enter(scene%system%cost, phase_output, outer, .true.)
+      if (self%file%is_open()) call flush_results(self, error)
+      call leave(scene%system%cost, outer)
+      call stop_clock(scene%system%cost)
+      if (allocated(error) .or. .not. self%file%is_open()) return
+      call write_cost(self%file, scene, error)
       if (allocated(error)) return
       call self%file%close(error)
    end subroutine close_results

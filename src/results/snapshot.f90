@@ -36,7 +36,7 @@ contains
    !> Takes down a state; reactions only when asked for, since they cost an internal force.
    subroutine take_snapshot(self, scene, motion, with_reactions)
       type(snapshot_type), intent(out) :: self
-      type(scene_type), intent(in) :: scene
+      type(scene_type), intent(inout) :: scene
       type(contact_motion_type), intent(in) :: motion
       logical, intent(in) :: with_reactions
 
@@ -89,7 +89,7 @@ contains
 
    !> Stresses and the rest of an element of a group, averaged over its points.
    function element_values(scene, group, e, snapshot) result(values)
-      type(scene_type), intent(in) :: scene
+      type(scene_type), intent(inout) :: scene
       integer, intent(in) :: group, e
       type(snapshot_type), intent(in) :: snapshot
       real(wp) :: values(n_recovered)
@@ -101,13 +101,14 @@ contains
 
    !> Stresses and the rest at the points of an element of a group.
    function point_values(scene, group, e, snapshot) result(values)
-      type(scene_type), intent(in) :: scene
+      type(scene_type), intent(inout) :: scene
       integer, intent(in) :: group, e
       type(snapshot_type), intent(in) :: snapshot
       real(wp) :: values(n_recovered, scene%system%structure%groups(group)%element%n_points)
       real(wp) :: d(size(scene%system%structure%groups(group)%lm, 1))
       integer :: i, first, n
 
+      scene%system%cost%stress_updates = scene%system%cost%stress_updates + 1
       associate (g => scene%system%structure%groups(group))
          d = 0.0_wp
          do i = 1, size(d)

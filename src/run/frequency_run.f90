@@ -1,6 +1,7 @@
 !> A frequency step: the modes, their table in the log and their results.
 module frequency_run
    use kinds, only: wp
+   use cost_account, only: enter, leave, phase_factor
    use errors, only: error_type
    use text, only: to_text, plural
    use places, only: fail_at
@@ -28,6 +29,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(modes_type) :: modes
       logical, allocatable :: implicit_equation(:)
+      integer :: outer
 
       call begin_step(simulation, i_step, error)
       if (allocated(error)) return
@@ -39,8 +41,10 @@ contains
             call write_system(results, simulation%scene, version_text, implicit_equation, error)
             if (allocated(error)) return
          end if
+         call enter(system%cost, phase_factor, outer)
          call find_modes(system%structure, system%profile, state%d, state%history, step%n_modes, &
                modes, error)
+         call leave(system%cost, outer)
          if (allocated(error)) return
          system%matrices%n_factorizations = system%matrices%n_factorizations &
                + modes%n_factorizations

@@ -1,11 +1,13 @@
-!> Increments of a step: fixed, or automatic with cut-back and growth. An increment that is not
-!> accepted leaves no trace: all that it touches is put back from a checkpoint.
+!> Increments of a step: fixed, or in static steps automatic with cut-back and growth. An increment
+!> that is not accepted leaves no trace: all that it touches is put back from a checkpoint.
 module increments
    use kinds, only: wp
    use errors, only: error_type, new_error, status_numerical
    use text, only: to_text
+   use cost_account, only: enter, leave, phase_contact, phase_other
    use steps, only: step_type
    use energy_ledger, only: ledger_type
+   use constraint_rows, only: rows_type
    use impact_scene, only: contact_motion_type, accept_span
    use constrained_step, only: solve_statically
    use scene_setup, only: simulation_type
@@ -13,31 +15,27 @@ module increments
    private
 
    public :: control_type, start_control, take_increment, take_automatic_increment
-   public :: checkpoint_type, keep_state, put_back
+   public :: checkpoint_type, keep_state, put_back, add_smallest
 
    !> All that an increment changes.
    type :: checkpoint_type
       type(contact_motion_type) :: motion
       type(ledger_type) :: ledger
+      type(rows_type), allocatable :: rows       !! where they move with the bodies
       integer :: n_events = 0
    end type checkpoint_type
 
-   !> Automatic choice of increments.
+   !> Automatic choice of static increments.
    type :: control_type
       real(wp) :: dt = 0.0_wp                    !! to be tried next
       real(wp) :: dt_min = 0.0_wp, dt_max = 0.0_wp
-      real(wp) :: tolerance = 0.0_wp             !! of the local displacement error, relative
-      real(wp) :: scale = 0.0_wp                 !! largest displacement met
-      real(wp) :: proven = 0.0_wp                !! the last increment that the estimate has passed
       integer :: n_easy = 0                      !! increments in a row that went easily
       integer :: n_cut = 0                       !! increments tried in vain
    end type control_type
 
-   real(wp), parameter :: default_tolerance = 1.0e-3_wp
    real(wp), parameter :: smallest_share = 1.0e-5_wp   !! of the step, default of dt min
    real(wp), parameter :: cut_factor = 0.25_wp         !! after a failure to converge
    real(wp), parameter :: growth_factor = 1.5_wp
-   real(wp), parameter :: round_off = 1.0e-9_wp
    integer, parameter :: easy_iterations = 5
    integer, parameter :: easy_increments = 2
 
@@ -49,13 +47,10 @@ contains
       type(step_type), intent(in) :: step
 
       self%dt = step%dt
-      self%proven = step%dt
       self%dt_min = step%dt_min
       if (.not. self%dt_min > 0.0_wp) self%dt_min = min(step%dt, smallest_share*step%duration)
       self%dt_max = step%dt_max
       if (.not. self%dt_max > 0.0_wp) self%dt_max = step%duration
-      self%tolerance = step%tolerance
-      if (.not. self%tolerance > 0.0_wp) self%tolerance = default_tolerance
    end subroutine start_control
 
    !> Keeps the state before an increment.
@@ -65,6 +60,7 @@ contains
 
       checkpoint%motion = simulation%motion
       checkpoint%ledger = simulation%scene%ledger
+      if (simulation%scene%rows%moving) checkpoint%rows = simulation%scene%rows
       checkpoint%n_events = simulation%scene%n_events
    end subroutine keep_state
 
@@ -75,6 +71,7 @@ contains
 
       simulation%motion = checkpoint%motion
       simulation%scene%ledger = checkpoint%ledger
+      if (allocated(checkpoint%rows)) simulation%scene%rows = checkpoint%rows
       simulation%scene%n_events = checkpoint%n_events
       simulation%scene%impulse = 0.0_wp
    end subroutine put_back
@@ -84,22 +81,34 @@ contains
       type(simulation_type), intent(inout) :: simulation
       real(wp), intent(in) :: dt
       type(error_type), allocatable, intent(out) :: error
-      type(contact_motion_type) :: next
+      integer :: outer
 
       simulation%scene%impulse = 0.0_wp
       simulation%scene%dt = dt
-      if (.not. simulation%scene%system%static) then
+      call enter(simulation%scene%system%cost, merge(phase_contact, phase_other, &
+            simulation%scene%rows%n > 0), outer)
+      if (simulation%scene%system%static) then
+         call take_static_increment(simulation, dt, error)
+      else
          call simulation%method%advance(simulation%scene, simulation%motion, dt, error)
-         return
       end if
+      call leave(simulation%scene%system%cost, outer)
+   end subroutine take_increment
+
+   subroutine take_static_increment(simulation, dt, error)
+      type(simulation_type), intent(inout) :: simulation
+      real(wp), intent(in) :: dt
+      type(error_type), allocatable, intent(out) :: error
+      type(contact_motion_type) :: next
+
       call solve_statically(simulation%scene, simulation%motion, dt, next, error)
       if (allocated(error)) return
       call accept_span(simulation%scene, simulation%motion, next)
       simulation%motion = next
-   end subroutine take_increment
+   end subroutine take_static_increment
 
-   !> One accepted increment of at most `remaining`: tried, cut back where it does not converge or
-   !> its local error is too large, and the size of the next one chosen.
+   !> One accepted static increment of at most `remaining`: tried, cut back where it does not
+   !> converge, and the size of the next one chosen.
    subroutine take_automatic_increment(simulation, control, remaining, dt, error)
       type(simulation_type), intent(inout) :: simulation
       type(control_type), intent(inout) :: control
@@ -107,7 +116,6 @@ contains
       real(wp), intent(out) :: dt                !! what was taken
       type(error_type), allocatable, intent(out) :: error
       type(checkpoint_type) :: checkpoint
-      real(wp) :: ratio
       integer :: iterations
 
       call keep_state(simulation, checkpoint)
@@ -118,92 +126,55 @@ contains
          iterations = int(simulation%scene%n_iterations)
          call take_increment(simulation, dt, error)
          iterations = int(simulation%scene%n_iterations) - iterations
-         if (.not. allocated(error)) then
-            ratio = error_ratio(simulation, control, checkpoint, dt)
-            if (ratio <= 1.0_wp .or. dt <= control%dt_min) exit
-         else if (error%status /= status_numerical) then
-            return
-         end if
-         call cut_back(simulation, control, checkpoint, dt, ratio, error)
+         if (.not. allocated(error)) exit
+         if (error%status /= status_numerical) return
+         call put_back(simulation, checkpoint)
+         call cut_back(control, dt, error)
          if (allocated(error)) return
       end do
-      control%scale = max(control%scale, maxval(abs(simulation%motion%motion%d)))
-      if (ratio > 0.0_wp) control%proven = dt
-      call choose_next(simulation, control, dt, ratio, iterations)
+      call choose_next(control, dt, iterations)
    end subroutine take_automatic_increment
 
-   !> Local error of the displacement over what is tolerated: for Newmark's method
-   !> (beta - 1/6) h^2 (a1 - a0), of the largest displacement met. A static increment has no such
-   !> estimate, and one with events none that means anything, since the acceleration jumps: it may
-   !> be as large as the last one that passed, or as the deck's first.
-   function error_ratio(simulation, control, checkpoint, dt) result(ratio)
-      type(simulation_type), intent(in) :: simulation
-      type(control_type), intent(in) :: control
-      type(checkpoint_type), intent(in) :: checkpoint
-      real(wp), intent(in) :: dt
-      real(wp) :: ratio
-      real(wp) :: weight, scale
-
-      ratio = 0.0_wp
-      if (simulation%scene%system%static) return
-      if (simulation%scene%n_events > checkpoint%n_events) then
-         if (dt > control%proven*(1.0_wp + round_off)) ratio = (dt/control%proven)**3
-         return
-      end if
-      weight = max(abs(simulation%scene%system%newmark%beta - 1.0_wp/6.0_wp), 1.0_wp/12.0_wp)
-      scale = max(control%scale, maxval(abs(simulation%motion%motion%d)))
-      if (.not. scale > 0.0_wp) return
-      ratio = weight*dt**2*maxval(abs(simulation%motion%motion%a - checkpoint%motion%motion%a)) &
-            /(control%tolerance*scale)
-   end function error_ratio
-
-   !> Puts the state back and chooses a smaller increment; at the smallest one the run stops.
-   subroutine cut_back(simulation, control, checkpoint, dt, ratio, error)
-      type(simulation_type), intent(inout) :: simulation
+   !> Chooses a smaller increment; at the smallest one the run stops.
+   subroutine cut_back(control, dt, error)
       type(control_type), intent(inout) :: control
-      type(checkpoint_type), intent(in) :: checkpoint
-      real(wp), intent(in) :: dt
-      real(wp), intent(in) :: ratio              !! of the error, where the increment converged
+      real(wp), intent(in) :: dt                 !! what was tried
       type(error_type), allocatable, intent(inout) :: error
-      character(len=:), allocatable :: cause
 
-      call put_back(simulation, checkpoint)
       control%n_cut = control%n_cut + 1
       control%n_easy = 0
-      if (.not. allocated(error)) then
-         control%dt = max(control%dt_min, dt*max(cut_factor, 0.9_wp*ratio**(-1.0_wp/3.0_wp)))
-         return
-      end if
       control%dt = cut_factor*dt
       if (control%dt >= control%dt_min) then
          deallocate (error)
-         return
+      else
+         call add_smallest(error, dt, control%dt_min)
       end if
+   end subroutine cut_back
+
+   !> Says of a failure that smaller increments have been tried.
+   subroutine add_smallest(error, dt, dt_min)
+      type(error_type), allocatable, intent(inout) :: error
+      real(wp), intent(in) :: dt, dt_min
+      character(len=:), allocatable :: cause
+
       cause = error%message
       call new_error(error, status_numerical, cause//new_line('a') &
             //'  the increment was cut back to '//to_text(dt)//'; the smallest allowed is ' &
-            //to_text(control%dt_min))
-   end subroutine cut_back
+            //to_text(dt_min))
+   end subroutine add_smallest
 
-   !> Growth after increments that went easily: by the error estimate in motion, by the count of
-   !> iterations otherwise. Small changes are not worth a new factorization.
-   subroutine choose_next(simulation, control, dt, ratio, iterations)
-      type(simulation_type), intent(in) :: simulation
+   !> Growth after increments that went easily, by the count of iterations. Small changes are not
+   !> worth a new factorization.
+   pure subroutine choose_next(control, dt, iterations)
       type(control_type), intent(inout) :: control
-      real(wp), intent(in) :: dt, ratio
+      real(wp), intent(in) :: dt
       integer, intent(in) :: iterations
-      real(wp) :: factor
 
       control%n_easy = control%n_easy + 1
       if (iterations > easy_iterations) control%n_easy = 0
       if (control%n_easy < easy_increments) return
-      factor = growth_factor
-      if (.not. simulation%scene%system%static .and. ratio > 0.0_wp) then
-         factor = min(factor, 0.9_wp*ratio**(-1.0_wp/3.0_wp))
-      end if
-      if (factor < 1.2_wp) return
       ! the last increment of a step may be shorter than what is tried next
-      control%dt = min(control%dt_max, max(control%dt, factor*dt))
+      control%dt = min(control%dt_max, max(control%dt, growth_factor*dt))
       control%n_easy = 0
    end subroutine choose_next
 

@@ -2,6 +2,7 @@
 module run_report
    use kinds, only: wp, int64
    use text, only: to_text, plural
+   use cost_account, only: n_phases, phase_names, phase_factor, phase_solve
    use mesh, only: scheme_implicit, scheme_explicit
    use steps, only: procedure_static, procedure_dynamic, procedure_frequency
    use skyline_matrix, only: profile_entries
@@ -11,7 +12,8 @@ module run_report
          method_penalty, method_lagrange
    use transformation, only: impact_beta
    use stability_limit, only: stable_frequency
-   use impact_scene, only: event_impact, event_capture, event_release, event_contact, event_limit
+   use impact_scene, only: event_impact, event_capture, event_release, event_contact, event_limit, &
+         scene_type
    use automatic_groups, only: partition_type
    use increment_count, only: count_increments
    use scene_setup, only: simulation_type
@@ -127,6 +129,8 @@ contains
                //to_text(system%newmark%beta)
          if (abs(system%newmark%alpha) > 0.0_wp) line = line//', HHT alpha ' &
                //to_text(system%newmark%alpha)
+         if (simulation%scene%settings%fourth_order) line = "  Gauss' method in two stages, " &
+               //'order 4; a complex factorization or solution counts as four'
          call say(log, line)
          if (n_explicit > 0) call say(log, '  '//plural(n_explicit, 'explicit element') &
                //', critical step '//to_text(simulation%critical(scheme_explicit)%step))
@@ -163,7 +167,9 @@ contains
          case (method_lagrange)
             line = 'Lagrange multipliers, velocities corrected at the ends of steps'
          case default
-            if (settings%anchored) then
+            if (settings%fourth_order) then
+               line = 'transformation, order 4: stepped to every impact anew'
+            else if (settings%anchored) then
                line = 'transformation, steps of one size that begin at events'
             else
                line = 'transformation, beta of the impact step ' &
@@ -240,13 +246,12 @@ contains
    end subroutine report_notes
 
    !> Counts, energies and cost of a run.
-   subroutine report_summary(simulation, seconds, log)
+   subroutine report_summary(simulation, log)
       type(simulation_type), intent(in) :: simulation
-      real(wp), intent(in) :: seconds            !! elapsed
       type(log_type), intent(in) :: log
+      character(len=:), allocatable :: line
 
-      associate (n => simulation%n_events, matrices => simulation%scene%system%matrices, &
-            ledger => simulation%scene%ledger)
+      associate (n => simulation%n_events, ledger => simulation%scene%ledger)
          call say(log, 'reached time '//to_text(simulation%motion%motion%t))
          if (simulation%scene%rows%n > 0) call say(log, 'events: ' &
                //to_text(n(event_impact))//' impacts, '//to_text(n(event_contact))//' overlaps, ' &
@@ -255,18 +260,54 @@ contains
                'warning: MAX EVENTS was reached; rows captured by it: ' &
                //to_text(n(event_limit)))
          if (simulation%scene%rows%n > 0) call report_contact(simulation, log)
-         call say(log, 'energy: kinetic '//to_text(ledger%kinetic)//', strain ' &
+         line = 'energy: '
+         if (ledger%time < simulation%motion%motion%t) line = 'energy at time ' &
+               //to_text(ledger%time)//': '
+         call say(log, line//'kinetic '//to_text(ledger%kinetic)//', strain ' &
                //to_text(ledger%strain) &
                //', damping '//to_text(ledger%damping)//', friction '//to_text(ledger%friction) &
                //', impacts '//to_text(ledger%impact_loss) &
                //', external work '//to_text(ledger%external_work)//', balance error ' &
                //to_text(ledger%balance_error, 3))
-         call say(log, 'cost: '//to_text(matrices%n_factorizations)//' factorizations in ' &
-               //to_text(matrices%factor_seconds, 3)//' s, '//to_text(matrices%n_solves) &
-               //' solves in '//to_text(matrices%solve_seconds, 3)//' s, all in ' &
-               //to_text(seconds, 3)//' s')
       end associate
+      call report_cost(simulation%scene, log)
    end subroutine report_summary
+
+   !> What the result's /cost says.
+   subroutine report_cost(scene, log)
+      type(scene_type), intent(in) :: scene
+      type(log_type), intent(in) :: log
+      character(len=:), allocatable :: line
+      integer :: i
+
+      associate (cost => scene%system%cost, matrices => scene%system%matrices)
+         call say(log, 'cost: '//to_text(matrices%n_factorizations)//' factorizations in ' &
+               //to_text(cost%seconds(phase_factor), 3)//' s, '//to_text(matrices%n_solves) &
+               //' solves in '//to_text(cost%seconds(phase_solve), 3)//' s, all in ' &
+               //to_text(cost%elapsed, 3)//' s')
+         call say(log, 'cost: '//to_text(cost%increments)//' increments, ' &
+               //to_text(scene%n_iterations)//' iterations, '//to_text(cost%element_updates) &
+               //' element updates, '//to_text(scene%geometry%n_searches)//' contact searches, ' &
+               //to_text(cost%processor, 3)//' s of processor time')
+         line = ''
+         do i = 1, n_phases
+            if (i > 1) line = line//', '
+            line = line//trim(phase_names(i))//' '//percent(cost%seconds(i), cost%elapsed)
+         end do
+         call say(log, 'cost: '//line)
+      end associate
+   end subroutine report_cost
+
+   !> "12 %".
+   pure function percent(part, whole) result(text)
+      real(wp), intent(in) :: part, whole
+      character(len=:), allocatable :: text
+      real(wp) :: share
+
+      share = 0.0_wp
+      if (whole > 0.0_wp) share = 100.0_wp*part/whole
+      text = to_text(nint(share))//' %'
+   end function percent
 
    !> What contact has cost, and how often the fictitious force had to be found otherwise.
    subroutine report_contact(simulation, log)

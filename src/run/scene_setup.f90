@@ -23,8 +23,10 @@ module scene_setup
          check_overlaps, check_jump
    use impact_method, only: impact_method_type
    use increment_count, only: count_increments
+   use massless_contacts, only: mark_massless_rows
    use automatic_groups, only: partition_type, resolve_automatic
    use impact_factory, only: make_impact_method, check_method, check_anchor
+   use order_check, only: check_order
    implicit none
    private
 
@@ -243,7 +245,11 @@ contains
          if (allocated(error)) return
          call check_frequencies(self, step, error)
          if (allocated(error)) return
+         call mark_massless_rows(self%model, self%contact, system, self%scene%rows, error)
+         if (allocated(error)) return
          call check_method(self%model, self%scene%settings, step, system%newmark%beta, error)
+         if (allocated(error)) return
+         call check_order(self%model, self%scene, step, error)
          if (allocated(error)) return
          call check_anchor(self%model, self%scene, step, error)
       end associate

@@ -4,21 +4,26 @@ module simulation
    use errors, only: error_type, new_error, status_numerical
    use text, only: to_text
    use clock, only: seconds_now
-   use steps, only: step_type, request_energy_print, procedure_frequency
-   use motion_state, only: state_type
-   use energy_ledger, only: ledger_type, close_increment
+   use cost_account, only: cost_type, start_clock, enter, leave, next_increment, end_increments, &
+         phase_read, phase_build, phase_output
+   use steps, only: step_type, procedure_frequency
+   use energy_ledger, only: close_increment
    use effective_matrix, only: mark_implicit
    use impact_scene, only: scene_type
    use deck_reader, only: read_deck
    use result_file, only: result_file_type, open_results, record_increment, close_results, &
          write_system, flush_results
    use command_line, only: command_type, version_text
-   use run_log, only: log_type, open_log, close_log, say, note, write_status
+   use run_log, only: log_type, open_log, close_log, say, note, write_status, has_line
    use progress, only: progress_type, start_progress, show_progress, end_progress
    use scene_setup, only: simulation_type, build_scene, begin_step, initial_motion
    use increment_count, only: count_increments, last_increment
    use step_start, only: start_step
    use increments, only: control_type, start_control, take_increment, take_automatic_increment
+   use increment_checks, only: check_finite, check_energies, check_interpolation, &
+         check_balance, needs_energies
+   use twin_motion, only: twins_type, start_twins, take_fine_increment, compare_twins, step_is_over
+   use rehearsal, only: plan_type, rehearse, report_tolerance
    use frequency_run, only: run_frequency_step
    use memory_estimate, only: memory_type, estimate_memory, add_step_memory, memory_text
    use run_report, only: report_model, report_step, report_notes, report_summary
@@ -92,24 +97,30 @@ contains
       type(simulation_type) :: simulation
       type(output_type) :: output
       type(error_type), allocatable :: close_error
-      real(wp) :: started
+      integer :: outer
 
-      started = seconds_now()
-      output%last_flush = started
-      call read_deck(simulation%model, command%deck, command%definitions, error)
-      if (allocated(error)) return
-      call prepare(simulation, output%log, .false., error)
-      if (allocated(error)) return
-      output%end_time = simulation%motion%motion%t
-      call rebuild(simulation, error)
+      associate (cost => simulation%scene%system%cost)
+         call start_clock(cost)
+         output%last_flush = seconds_now()
+         call enter(cost, phase_read, outer)
+         call read_deck(simulation%model, command%deck, command%definitions, error)
+         call leave(cost, outer)
+         if (allocated(error)) return
+         call enter(cost, phase_build, outer)
+         call prepare(simulation, output%log, .false., error)
+         if (allocated(error)) return
+         output%end_time = simulation%motion%motion%t
+         call rebuild(simulation, error)
+         call leave(cost, outer)
+      end associate
       if (allocated(error)) return
       call open_log(output%log, stem_of(command%output), command%quiet, error)
       if (allocated(error)) return
       call run_steps(simulation, command, output, error)
       call end_progress(output%progress)
-      call close_results(output%results, close_error)
+      call close_results(output%results, simulation%scene, close_error)
       if (.not. allocated(error) .and. allocated(close_error)) call move_alloc(close_error, error)
-      call report_summary(simulation, seconds_now() - started, output%log)
+      call report_summary(simulation, output%log)
       call report_end(output%log, error)
       call close_log(output%log)
    end subroutine run_deck
@@ -155,12 +166,14 @@ contains
       type(command_type), intent(in) :: command
       type(output_type), intent(inout) :: output
       type(error_type), allocatable, intent(out) :: error
-      integer :: i
+      integer :: i, outer
 
       call report_model(simulation, output%log)
       call report_notes(simulation, output%log)
+      call enter(simulation%scene%system%cost, phase_output, outer, .true.)
       call open_results(output%results, command%output, simulation%model, simulation%scene, &
             simulation%contact, error)
+      call leave(simulation%scene%system%cost, outer)
       if (allocated(error)) return
       call start_progress(output%progress, command%quiet)
       do i = 1, size(simulation%model%steps)
@@ -178,17 +191,23 @@ contains
       integer, intent(in) :: i_step
       type(output_type), intent(inout) :: output
       type(error_type), allocatable, intent(out) :: error
+      integer :: outer
 
+      call enter(simulation%scene%system%cost, phase_build, outer)
       call start_step(simulation, i_step, error)
+      call leave(simulation%scene%system%cost, outer)
       if (allocated(error)) return
       call report_step(simulation, i_step, output%log)
       if (i_step == 1) call record_start(simulation, output, error)
       if (allocated(error)) return
       if (simulation%model%steps(i_step)%direct) then
          call run_fixed(simulation, i_step, output, error)
-      else
+      else if (simulation%scene%system%static) then
          call run_automatic(simulation, i_step, output, error)
+      else
+         call run_to_tolerance(simulation, i_step, output, error)
       end if
+      call end_increments(simulation%scene%system%cost)
    end subroutine run_step
 
    !> The system of equations and the initial state.
@@ -197,14 +216,22 @@ contains
       type(output_type), intent(inout) :: output
       type(error_type), allocatable, intent(out) :: error
       logical, allocatable :: implicit_equation(:)
+      integer :: outer
 
+      call enter(simulation%scene%system%cost, phase_output, outer, .true.)
       call mark_implicit(simulation%scene%system%structure, implicit_equation)
       call write_system(output%results, simulation%scene, version_text, implicit_equation, error)
+      call leave(simulation%scene%system%cost, outer)
+      if (allocated(error)) return
+      call check_finite(simulation%motion%motion, simulation%scene%ledger, 0.0_wp, error)
+      if (allocated(error)) return
+      call check_energies(simulation%scene%ledger, simulation%motion%motion%t, error)
       if (allocated(error)) return
       call record_increment(output%results, simulation%scene, simulation%contact, &
             simulation%motion, simulation%model%steps(1)%requests, 0, .false., error)
       if (allocated(error)) return
-      if (seconds_now() - output%last_flush > quick_start) call flush_now(output, error)
+      if (seconds_now() - output%last_flush > quick_start) call flush_now(output, &
+            simulation%scene%system%cost, error)
    end subroutine record_start
 
    !> Increments of one size, the last one shorter where they do not fill the step.
@@ -236,7 +263,7 @@ contains
       end associate
    end subroutine run_fixed
 
-   !> Increments chosen by the program.
+   !> Static increments chosen by the program.
    subroutine run_automatic(simulation, i_step, output, error)
       type(simulation_type), intent(inout) :: simulation
       integer, intent(in) :: i_step
@@ -268,6 +295,34 @@ contains
             //' automatic increments, '//to_text(control%n_cut)//' tried in vain')
    end subroutine run_automatic
 
+   !> A dynamic step in increments that keep its error to TOLERANCE.
+   subroutine run_to_tolerance(simulation, i_step, output, error)
+      type(simulation_type), intent(inout) :: simulation
+      integer, intent(in) :: i_step
+      type(output_type), intent(inout) :: output
+      type(error_type), allocatable, intent(out) :: error
+      type(plan_type) :: plan
+      type(twins_type) :: twins
+      integer :: increment
+
+      call rehearse(simulation, i_step, output%log, plan, error)
+      if (allocated(error)) return
+      call start_twins(twins, simulation, plan%settings)
+      increment = 0
+      do while (.not. step_is_over(twins))
+         increment = increment + 1
+         call check_count(simulation%model%steps(i_step), increment, twins%step_time, error)
+         if (allocated(error)) return
+         call take_fine_increment(twins, simulation, error)
+         if (allocated(error)) return
+         call finish_increment(simulation, [i_step, increment], [twins%step_time, twins%dt], &
+               output, error)
+         if (allocated(error)) return
+         call compare_twins(twins, simulation)
+      end do
+      call report_tolerance(plan, twins, i_step, output%log)
+   end subroutine run_to_tolerance
+
    !> INC limits the automatic increments of a step.
    subroutine check_count(step, increment, step_time, error)
       type(step_type), intent(in) :: step
@@ -289,26 +344,36 @@ contains
       type(output_type), intent(inout) :: output
       type(error_type), allocatable, intent(out) :: error
       integer :: n_events
+      logical :: last
 
       associate (scene => simulation%scene, motion => simulation%motion, &
             step => simulation%model%steps(counts(1)))
          call check_finite(motion%motion, scene%ledger, times(2), error)
          if (allocated(error)) return
-         call close_increment(scene%ledger, scene%system, motion%motion)
+         last = times(1) >= step%duration
+         if (last .or. needs_energies(step%requests, counts(2))) call close_increment( &
+               scene%ledger, scene%system, motion%motion)
+         call check_energies(scene%ledger, motion%motion%t, error)
+         if (allocated(error)) return
          n_events = scene%n_events
          call count_events(simulation)
          call record_increment(output%results, scene, simulation%contact, motion, step%requests, &
-               counts(2), times(1) >= step%duration, error)
+               counts(2), last, error)
          if (allocated(error)) return
          call write_status(output%log, [counts, int(scene%n_iterations - output%iterations), &
                n_events], [times(1), motion%motion%t, times(2)])
-         if (.not. scene%system%structure%is_linear) then
+         if (has_line(counts(2)) .and. .not. scene%system%structure%is_linear) then
             call note_residuals(scene, counts(2), output%log)
          end if
          output%iterations = scene%n_iterations
          call show_progress(output%progress, motion%motion%t/output%end_time, motion%motion%t)
-         call flush_now_and_then(output, error)
+         call flush_now_and_then(output, scene%system%cost, error)
          if (allocated(error)) return
+         call next_increment(scene%system%cost)
+         if (scene%settings%anchored) then
+            call check_interpolation(scene%ledger, motion%motion%t, error)
+            if (allocated(error)) return
+         end if
          call check_balance(scene%ledger, step, motion%motion%t, error)
       end associate
    end subroutine finish_increment
@@ -342,59 +407,25 @@ contains
       call note(log, line)
    end subroutine note_residuals
 
-   !> A motion that is not finite stops the run; what was good is in the results.
-   subroutine check_finite(motion, ledger, dt, error)
-      type(state_type), intent(in) :: motion
-      type(ledger_type), intent(in) :: ledger
-      real(wp), intent(in) :: dt
-      type(error_type), allocatable, intent(out) :: error
-
-      ! energies of every freedom, if just found, leave no doubt
-      if (allocated(ledger%found)) then
-         if (all(abs(ledger%found) <= huge(1.0_wp))) return
-      end if
-      if (all(abs(motion%d) <= huge(1.0_wp)) .and. all(abs(motion%v) <= huge(1.0_wp)) .and. &
-            all(abs(motion%a) <= huge(1.0_wp))) return
-      call new_error(error, status_numerical, &
-            'the motion is not finite (NaN or infinite) at time ' &
-            //to_text(motion%t)//'; the last good increment is at '//to_text(motion%t - dt) &
-            //new_line('a') &
-            //'  cure: a smaller step, and a look at the loads and the energy before it')
-   end subroutine check_finite
-
-   !> The deck's limit on the balance error, a part of the largest energy met.
-   subroutine check_balance(ledger, step, t, error)
-      type(ledger_type), intent(in) :: ledger
-      type(step_type), intent(in) :: step
-      real(wp), intent(in) :: t
-      type(error_type), allocatable, intent(out) :: error
-      integer :: i
-
-      do i = 1, size(step%requests)
-         if (step%requests(i)%kind /= request_energy_print) cycle
-         if (.not. step%requests(i)%balance_limit > 0.0_wp) cycle
-         if (abs(ledger%balance_error) <= step%requests(i)%balance_limit*ledger%scale) cycle
-         call new_error(error, status_numerical, 'the energy balance error ' &
-               //to_text(ledger%balance_error)//' at time '//to_text(t)//' exceeds LIMIT=' &
-               //to_text(step%requests(i)%balance_limit)//' of the energy '//to_text(ledger%scale) &
-               //new_line('a')//'  cure: a smaller step, or a larger LIMIT on *ENERGY PRINT')
-         return
-      end do
-   end subroutine check_balance
-
    !> Keeps the file complete up to a few seconds ago.
-   subroutine flush_now_and_then(output, error)
+   subroutine flush_now_and_then(output, cost, error)
       type(output_type), intent(inout) :: output
+      type(cost_type), intent(inout) :: cost
       type(error_type), allocatable, intent(out) :: error
 
-      if (seconds_now() - output%last_flush >= flush_interval) call flush_now(output, error)
+      if (seconds_now() - output%last_flush >= flush_interval) call flush_now(output, cost, &
+            error)
    end subroutine flush_now_and_then
 
-   subroutine flush_now(output, error)
+   subroutine flush_now(output, cost, error)
       type(output_type), intent(inout) :: output
+      type(cost_type), intent(inout) :: cost
       type(error_type), allocatable, intent(out) :: error
+      integer :: outer
 
+      call enter(cost, phase_output, outer, .true.)
       call flush_results(output%results, error)
+      call leave(cost, outer)
       output%last_flush = seconds_now()
    end subroutine flush_now
 

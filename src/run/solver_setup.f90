@@ -34,6 +34,7 @@ contains
          return
       end if
       work%wanted = step%solver
+      if (step%order == 4) work%wanted = solver_skyline
       work%n_solves = 1.0_wp
       if (step%procedure == procedure_frequency) then
          work%wanted = solver_skyline

@@ -29,10 +29,12 @@ def with_solver(text, folder, solver):
 
 
 def fields(run):
-    """All real data of a result, by name."""
+    """All real data of a result but what it has cost, by name."""
     found = {}
 
     def take(name, item):
+        if name.startswith('cost/'):
+            return
         if isinstance(item, h5py.Dataset) and item.dtype.kind == 'f' and item.size:
             found[name] = item[...]
     run.file.visititems(take)
