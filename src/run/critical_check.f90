@@ -91,6 +91,12 @@ contains
       real(wp) :: limit, sure, longest
       character(len=:), allocatable :: over, cure
 
+      if (.not. critical%omega <= huge(critical%omega)) then
+         call fail_at(error, model%source, step%procedure_place, 'the highest frequency is not ' &
+               //'finite'//element_of(model, critical)//': stiffness over mass overflows', &
+               'give the model numbers that can be divided by each other: other units, more mass')
+         return
+      end if
       limit = stable_frequency(scene%system%newmark)
       longest = step%dt
       if (.not. step%direct) longest = merge(step%dt_max, step%duration, &
