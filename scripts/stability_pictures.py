@@ -49,27 +49,32 @@ def draw_steps(measured, floor, path):
 
 def draw_impact_steps(omega, deltas, found, recurring, path):
     """Growth of a step with an impact over frequency and place of the impact; of impacts every k
-    steps over frequency."""
+    steps (a dictionary with β = 1/6, and the worst of AUTO) over frequency."""
     figure, panels = plt.subplots(1, 3, figsize=(17, 5.6), layout="constrained")
     for axes, (beta, growth) in zip(panels, found.items()):
         shown = np.log10(np.maximum(growth - 1.0, 1e-16))
         picture = axes.pcolormesh(omega, deltas, shown.T, shading="nearest", cmap="cividis",
-                                  vmin=-16, vmax=1)
+                                  vmin=-12, vmax=2)
         axes.set(xscale="log", xlabel=FREQUENCY, ylabel="part of the step after the impact, δ",
                  title=f"A step with an impact, β = {beta}")
         limit = {"1/6": np.sqrt(12.0)}.get(beta)
+        if not np.isnan(growth).all() and np.nanmax(growth) - 1 < 1e-9:
+            axes.text(0.5, 0.5, f"radius − 1 below {np.nanmax(growth) - 1:.0e}\neverywhere",
+                      color="white", ha="center", va="center", fontsize=14, transform=axes.transAxes)
         if limit:
-            axes.axvline(limit, color="white", linestyle="--")
-            axes.text(1.1 * limit, 0.06, "limit of\nβ = 1/6", color="white", fontsize=11)
+            axes.axvline(limit, color="black", linestyle="--")
+            axes.text(1.15 * limit, 0.9, "limit of\nβ = 1/6", fontsize=12)
     figure.colorbar(picture, ax=panels[:2], label="log₁₀ (spectral radius − 1); white: no impact there")
     axes = panels[2]
-    for (k, growth), (colour, mark, line) in zip(recurring.items(), STYLES):
+    every, kept = recurring
+    for (k, growth), (colour, mark, line) in zip(every.items(), STYLES):
         axes.plot(omega, np.maximum(growth - 1.0, 1e-16), line, marker=mark, color=colour,
                   markersize=5, label=f"β = 1/6, every {k} steps" if k > 1 else "β = 1/6, every step")
     axes.plot(omega, omega**4 / 256.0, color="0.5", linewidth=1, label="(ωh)⁴ / 256")
-    axes.set(xscale="log", yscale="log", ylim=(1e-12, 1e2), xlabel=FREQUENCY,
+    axes.plot(omega, np.maximum(kept, 1e-16), color=PURPLE, label="β = 1/4 (AUTO), every 1 to 10 steps")
+    axes.set(xscale="log", yscale="log", ylim=(1e-16, 1e3), xlabel=FREQUENCY,
              ylabel="growth in a step (radius − 1), worst δ", title="The same every k steps")
-    axes.legend(loc="upper left")
+    axes.legend(loc="center right", bbox_to_anchor=(1.0, 0.42), fontsize=10)
     save(figure, path)
 
 

@@ -263,7 +263,7 @@ contains
       gaps = gaps_to_close(scene, motion)
       worst = minloc(gaps, dim=1)
       limit = merge_gap_tolerance*length
-      if (scene%rows%moving) limit = largest_shift*scene%geometry%size
+      if (scene%rows%moving) limit = largest_shift*length
       if (gaps(worst) >= -limit) return
       call no_room(scene%rows%node_id(worst), motion%motion%t, -gaps(worst), error)
    end subroutine check_room

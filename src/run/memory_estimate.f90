@@ -127,6 +127,13 @@ contains
 
       associate (system => simulation%scene%system)
          n = real(n_matrices(simulation, step), wp)
+         if (step%order == 4) then
+            ! complex factors of so many step lengths, M, C and K, and the factors of M
+            n = merge(2.0_wp, 8.0_wp, simulation%scene%rows%n == 0) + 4.0_wp
+            self%items(item_matrices) = max(self%items(item_matrices), real_bytes*n &
+                  *real(profile_entries(system%profile), wp))
+            return
+         end if
          if (system%matrices%choice%taken == solver_mumps) then
             entries = sparse_entries(system%profile%n)
          else
