@@ -348,8 +348,9 @@ contains
       self%most_touching = max(self%most_touching, n_touching)
       if (n_touching == 0 .or. all(self%has_met)) return
       do i = 1, self%scene%rows%n
-         if (self%motion%touching(i) .or. self%motion%lambda(i) > 0.0_wp) &
-               self%has_met(self%scene%rows%pair(i)) = .true.
+         if (self%motion%touching(i) .or. self%motion%lambda(i) > 0.0_wp) then
+            self%has_met(self%scene%rows%pair(i)) = .true.
+         end if
       end do
    end subroutine count_events
 
