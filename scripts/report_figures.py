@@ -267,7 +267,6 @@ def draw_energy_error(figure, runs):
         axes.plot(runs[case]["energy/time"], change, style, color=colour, lw=width,
                   label=f"step {step:g}")
         errors.append(largest(change))
-    mark_events(axes, runs[figure.cases[0]].events(), 0.0, END)
     axes.set_yscale("symlog", linthresh=1e-11)
     legend(axes)
     return picture, [

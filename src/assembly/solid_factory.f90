@@ -97,7 +97,7 @@ contains
       case (fault_none)
          return
       case (fault_coincident)
-         cause = 'has an edge of no length: two of its nodes coincide'
+         cause = 'has an edge of no length beside its size: two of its nodes coincide'
          cure = 'give its nodes different coordinates, or use a triangle'
       case (fault_radius)
          cause = 'is axisymmetric and has a node at a negative radius x'

@@ -314,8 +314,10 @@ contains
          if (structure%map%id(structure%map%dof(f), structure%map%node(f)) == equation) exit
       end do
       call new_error(error, status_numerical, 'singular system: '//freedom_name(structure, f) &
-            //' can move without resistance'//new_line('a') &
-            //'  cure: hold it with *BOUNDARY, or connect it with an element that has stiffness')
+            //' can move without resistance, or with one that is lost in the round-off of the ' &
+            //'stiffness around it'//new_line('a') &
+            //'  cure: hold it with *BOUNDARY, or connect it with an element that has stiffness; ' &
+            //'where stiffnesses differ by 1e13, write *EQUATION instead of the stiff element')
    end subroutine name_singular
 
    !> Solves with the matrix last prepared; b is overwritten.

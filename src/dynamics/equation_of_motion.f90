@@ -22,7 +22,7 @@ module equation_of_motion
    public :: predict_motion, start_near, fixed_force, residual, solve_motion, prepare_motion
    public :: prepare_mass, solve_mass, solve_together, force_balance, impose
    public :: settle_massless
-   public :: rigid_mass, count_updates
+   public :: rigid_mass, count_updates, resist
 
    !> A structure under the loads and conditions of a step, with its matrices.
    type :: system_type

@@ -93,8 +93,9 @@ contains
          if (.not. free(i)) cycle
          path = new_quintic(span%dt, g(i, :), r(i, :), a(i, :))
          candidates%guess(i) = first_below(path, level_of(path, candidates%threshold(i)))
-         if (candidates%guess(i) > 0.0_wp .and. g(i, 1) <= span%gap_limit) &
-               call start_open(path, span, candidates%guess(i), candidates%low(i))
+         if (candidates%guess(i) > 0.0_wp .and. g(i, 1) <= span%gap_limit) then
+            call start_open(path, span, candidates%guess(i), candidates%low(i))
+         end if
       end do
    end subroutine find_candidates
 

@@ -123,13 +123,16 @@ contains
       if (force >= -tolerance) then
          trial = span%dt*merge(0.25_wp, 0.75_wp, minval(forces(:, 2)) < minval(forces(:, 3)))
          call take_part(scene, motion, trial, step, force, error)
-         if (.not. allocated(error) .and. force >= -tolerance) &
-               call take_part(scene, motion, span%dt, step, force, error)
-         if (allocated(error) .or. force >= -tolerance) return
+         if (allocated(error)) return
+         if (force >= -tolerance) then
+            call take_part(scene, motion, span%dt, step, force, error)
+            return
+         end if
       end if
       bracket%x = [0.0_wp, step%dt]
       ! what is looked for is a force half the tolerance below zero
-      bracket%f = [max(0.0_wp, minval(forces(:, 1), mask=motion%touching)), force] + tolerance/2.0_wp
+      bracket%f = [max(0.0_wp, minval(forces(:, 1), mask=motion%touching)), force]
+      bracket%f = bracket%f + tolerance/2.0_wp
       do i = 1, max_trials
          trial = next_trial(bracket, i)
          if (.not. (trial > bracket%x(1) .and. trial < bracket%x(2))) exit

@@ -158,10 +158,12 @@ contains
       type(scene_type), intent(in) :: scene
       real(wp), intent(in) :: before(:), after(:)   !! (n_freedoms)
       real(wp) :: gain
+      real(wp) :: change(size(before))
 
       gain = 0.0_wp
-      if (.not. any(abs(after - before) > 0.0_wp)) return
-      gain = dot_product(inertia_force(scene%system%structure, after - before), after + before)/2.0_wp
+      change = after - before
+      if (.not. any(abs(change) > 0.0_wp)) return
+      gain = dot_product(inertia_force(scene%system%structure, change), after + before)/2.0_wp
    end function gain
 
    !> Contact forces at the Gauss points of a step, the first and the second.

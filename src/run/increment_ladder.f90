@@ -19,7 +19,7 @@ module increment_ladder
 
    !> Twice the increment makes eight times the local error: errors below this part may grow.
    real(wp), parameter :: easy_ratio = 0.7_wp/8.0_wp
-   integer, parameter :: fewest_needed = 2, most_needed = 4096
+   integer, parameter :: fewest_needed = 2, most_needed = 64
    !> A doubling that holds for so many times the increments it has waited for was right.
    integer, parameter :: proof = 8
 
@@ -44,13 +44,14 @@ contains
       lower_limit = dt <= self%dt_min
    end function lower_limit
 
-   !> Half of an increment that was too large. One that had just been doubled has to wait longer
-   !> the next time.
-   pure subroutine halve(self, dt)
+   !> Half of an increment that was too large. One that had just been doubled in smooth motion has
+   !> to wait longer the next time.
+   pure subroutine halve(self, dt, smooth)
       type(ladder_type), intent(inout) :: self
       real(wp), intent(in) :: dt                 !! what was tried
+      logical, intent(in) :: smooth              !! nothing happened in it
 
-      if (self%n_since >= 0) self%n_needed = min(2*self%n_needed, most_needed)
+      if (smooth .and. self%n_since >= 0) self%n_needed = min(2*self%n_needed, most_needed)
       self%n_since = -1
       self%n_easy = 0
       self%n_changes = self%n_changes + 1

@@ -52,10 +52,27 @@ contains
          n_history = real(structure%n_history, wp)
       end associate
       ! d, v, a, the forces beside them, of two states and the work between them
-      self%items(item_state) = real_bytes*(10.0_wp*n_freedoms + 3.0_wp*n_history)
+      self%items(item_state) = real_bytes*((10.0_wp + n_beside(simulation))*n_freedoms &
+            + 3.0_wp*n_history)
       self%items(item_contact) = real_bytes*contact_entries(simulation)
       call add_output(self, simulation)
    end subroutine estimate_memory
+
+   !> Arrays of the states with contact that stand beside the first: where an impact is sought they
+   !> are those at both ends of a part of the step, at the impact and on trial.
+   pure function n_beside(simulation) result(n)
+      type(simulation_type), intent(in) :: simulation
+      real(wp) :: n
+      real(wp), parameter :: n_arrays = 7.0_wp
+
+      associate (scene => simulation%scene)
+         n = 0.0_wp
+         if (scene%rows%n == 0) return
+         n = n_arrays
+         if (scene%settings%method /= method_transformation .or. scene%settings%anchored) return
+         n = 6.0_wp*n_arrays
+      end associate
+   end function n_beside
 
    !> Motions by unit forces in contact rows: work space, and those kept for rows that stay.
    pure function contact_entries(simulation) result(entries)
@@ -113,6 +130,13 @@ contains
 
       associate (system => simulation%scene%system)
          n = real(n_matrices(simulation, step), wp)
+         if (step%order == 4) then
+            ! complex factors of so many step lengths, M, C and K, and the factors of M
+            n = merge(2.0_wp, 8.0_wp, simulation%scene%rows%n == 0) + 4.0_wp
+            self%items(item_matrices) = max(self%items(item_matrices), real_bytes*n &
+                  *real(profile_entries(system%profile), wp))
+            return
+         end if
          if (system%matrices%choice%taken == solver_mumps) then
             entries = sparse_entries(system%profile%n)
          else

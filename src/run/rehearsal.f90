@@ -33,6 +33,7 @@ module rehearsal
       real(wp) :: local_tolerance = 0.0_wp       !! at size 1
       type(twin_settings_type) :: settings       !! of the size chosen
       type(trial_type) :: last                   !! rehearsal
+      type(trial_type) :: base                   !! the first one with an error small enough to show an order
       real(wp) :: size = 1.0_wp                  !! to be taken next
       real(wp) :: order = 2.0_wp                 !! of the error in the size
       logical :: ready = .false.                 !! the next run is the real one
@@ -45,13 +46,15 @@ module rehearsal
    real(wp), parameter :: explicit_share = 0.45_wp     !! of the critical step: the coarse one is double
    integer, parameter :: most_rehearsals = 10
    real(wp), parameter :: aim = 0.6_wp                 !! estimate aimed at, of what is asked
-   real(wp), parameter :: nothing = 1.0e-13_wp         !! errors below are round-off
-   !> An error this small foretells others without a second rehearsal.
-   real(wp), parameter :: small_error = 0.05_wp
+   real(wp), parameter :: enough = 0.25_wp             !! an estimate from here on needs no change
+   real(wp), parameter :: nothing = 1.0e-13_wp         !! errors below mean nothing
+   real(wp), parameter :: round_off = 1.0e-10_wp       !! errors below may be that of impact times
+   !> A size this near is foretold by one rehearsal, one farther off by two, which show the order.
+   real(wp), parameter :: near = 0.4_wp
    real(wp), parameter :: full_order = 2.0_wp, least_order = 0.5_wp
    !> Measured orders from here on are taken for two, the rest for scatter.
    real(wp), parameter :: nearly_full = 1.4_wp
-   real(wp), parameter :: apart = 1.5_wp               !! sizes that show an order
+   real(wp), parameter :: apart = 2.5_wp               !! runs that show an order, by their increments
    real(wp), parameter :: large_error = 0.2_wp         !! errors above show none
    real(wp), parameter :: same_count = 0.05_wp
    !> Without a TOLERANCE in the deck increments are not made smaller than this beyond all cost.
@@ -77,7 +80,7 @@ contains
          if (allocated(error)) return
          call put_back(simulation, start)
          call say(log, '  rehearsal: '//plural(trial%n, 'increment')//', estimated error ' &
-               //to_text(estimated_error(trial, plan%last, plan%order), 3))
+               //to_text(estimated_error(trial, plan%base, plan%order), 3))
          call judge(plan, trial)
          if (plan%given .and. wanted_count(plan) > real(plan%most, wp)) &
                call refuse(plan, wanted_count(plan), error)
@@ -96,7 +99,7 @@ contains
       self%asked = merge(step%tolerance, default_tolerance, self%given)
       self%most = merge(step%max_increments, default_most, step%max_increments > 0)
       self%dt = step%dt
-      self%local_tolerance = min(1.0e-2_wp, max(1.0e-7_wp, 20.0_wp*self%asked**1.5_wp))
+      self%local_tolerance = min(1.0e-2_wp, max(1.0e-7_wp, 100.0_wp*self%asked**1.5_wp))
       self%settings%duration = step%duration
       associate (limits => self%settings%limits)
          limits = [step%dt_min, step%dt_max]
@@ -149,48 +152,51 @@ contains
       real(wp) :: estimate, target
       logical :: forced, trusted
 
-      self%order = measured_order(trial, self%last, self%order)
-      estimate = estimated_error(trial, self%last, self%order)
-      trusted = self%last%n > 0 .or. estimate < small_error
+      self%order = measured_order(trial, self%base, self%order)
+      estimate = estimated_error(trial, self%base, self%order)
+      trusted = self%last%n > 0
       ! limits of the increment, or events, leave no choice
       forced = self%last%n > 0 .and. abs(trial%n/real(max(1, self%last%n), wp) - 1.0_wp) < &
-            same_count .and. abs(log(trial%size/self%last%size)) >= log(apart)
+            same_count .and. abs(log(trial%size/self%last%size)) >= log(1.5_wp)
       self%last = trial
+      if (self%base%n == 0 .and. trial%difference <= large_error) self%base = trial
       self%size = trial%size
-      self%ready = estimate <= nothing .or. forced .or. self%n_rehearsals >= most_rehearsals
+      self%ready = estimate <= max(nothing, min(round_off, 0.1_wp*self%asked)) .or. forced .or. self%n_rehearsals >= most_rehearsals
+      self%ready = self%ready .or. (estimate <= self%asked .and. estimate >= enough*self%asked)
       if (self%ready) return
       target = trial%size*(aim*self%asked/estimate)**(1.0_wp/self%order)
       if (.not. self%given) target = max(target, default_least)
       self%size = target
-      self%ready = trusted .and. target >= trial%size/4.0_wp .and. target <= 2.0_wp*trial%size
+      self%ready = (trusted .or. (target >= near*trial%size .and. estimate < large_error)) .and. &
+            target >= trial%size/4.0_wp .and. target <= 1.5_wp*trial%size
       if (self%ready) return
       if (target < trial%size) self%size = max(min(2.5_wp*target, trial%size/1.5_wp), &
             trial%size/4.0_wp)
    end subroutine judge
 
-   !> Order of the error by two runs, if their sizes tell; else as it was.
-   pure function measured_order(trial, last, order) result(measured)
-      type(trial_type), intent(in) :: trial, last
+   !> Order of the error in the number of increments by two runs, if they differ enough; else as it
+   !> was. (Increments of a size twice as large need not be half as many: they are on a ladder.)
+   pure function measured_order(trial, base, order) result(measured)
+      type(trial_type), intent(in) :: trial, base
       real(wp), intent(in) :: order
-      real(wp) :: measured
+      real(wp) :: measured, growth
 
       measured = order
-      if (last%n == 0) return
-      if (abs(log(trial%size/last%size)) < log(apart)) return
-      if (min(trial%difference, last%difference) <= nothing) return
-      if (max(trial%difference, last%difference) > large_error) return
-      measured = log(trial%difference/last%difference)/log(trial%size/last%size)
-      measured = max(measured, least_order)
+      if (base%n == 0 .or. trial%n == 0) return
+      growth = log(real(trial%n, wp)/real(base%n, wp))
+      if (abs(growth) < log(apart)) return
+      if (min(trial%difference, base%difference) <= nothing) return
+      measured = max(log(base%difference/trial%difference)/growth, least_order)
       if (measured > nearly_full) measured = full_order
    end function measured_order
 
    !> Error of the fine motion by Richardson, of the largest displacement.
-   pure function estimated_error(trial, last, order) result(estimate)
-      type(trial_type), intent(in) :: trial, last
+   pure function estimated_error(trial, base, order) result(estimate)
+      type(trial_type), intent(in) :: trial, base
       real(wp), intent(in) :: order              !! if both runs do not show one
       real(wp) :: estimate
 
-      estimate = trial%difference/(2.0_wp**measured_order(trial, last, order) - 1.0_wp)
+      estimate = trial%difference/(2.0_wp**measured_order(trial, base, order) - 1.0_wp)
    end function estimated_error
 
    !> Increments that what is asked will take at least.
@@ -233,7 +239,7 @@ contains
       trial%size = plan%size
       trial%n = twins%n
       if (twins%scale > 0.0_wp) trial%difference = twins%difference/twins%scale
-      estimate = estimated_error(trial, plan%last, plan%order)
+      estimate = estimated_error(trial, plan%base, plan%order)
       call say(log, 'step '//to_text(i_step)//': '//plural(twins%n, 'automatic increment')//', ' &
             //to_text(twins%ladder%n_changes)//' changes of size, ' &
             //plural(plan%n_rehearsals, 'rehearsal')//' before')

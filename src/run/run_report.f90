@@ -174,9 +174,9 @@ contains
                line = 'transformation, steps of one size that begin at events'
             else
                line = 'transformation, beta of the impact step ' &
-                     //to_text(impact_beta(simulation%scene, &
-                     simulation%model%steps(1)%dt))//' ('//trim(merge('given    ', &
-                     'automatic', settings%beta_choice == beta_given))//')'
+                     //to_text(impact_beta(simulation%scene))//' ('//trim(merge( &
+                     'given           ', 'that of the step', &
+                     settings%beta_choice == beta_given))//')'
             end if
          end select
       end associate

@@ -20,7 +20,8 @@ module simulation
    use increment_count, only: count_increments, last_increment
    use step_start, only: start_step
    use increments, only: control_type, start_control, take_increment, take_automatic_increment
-   use increment_checks, only: check_finite, check_balance, needs_energies
+   use increment_checks, only: check_finite, check_energies, check_interpolation, &
+         check_balance, needs_energies
    use twin_motion, only: twins_type, start_twins, take_fine_increment, compare_twins, step_is_over
    use rehearsal, only: plan_type, rehearse, report_tolerance
    use frequency_run, only: run_frequency_step
@@ -188,6 +189,10 @@ contains
       call write_system(output%results, simulation%scene, version_text, implicit_equation, error)
       call leave(simulation%scene%system%cost, outer)
       if (allocated(error)) return
+      call check_finite(simulation%motion%motion, simulation%scene%ledger, 0.0_wp, error)
+      if (allocated(error)) return
+      call check_energies(simulation%scene%ledger, simulation%motion%motion%t, error)
+      if (allocated(error)) return
       call record_increment(output%results, simulation%scene, simulation%contact, &
             simulation%motion, simulation%model%steps(1)%requests, 0, .false., error)
       if (allocated(error)) return
@@ -314,6 +319,8 @@ contains
          last = times(1) >= step%duration
          if (last .or. needs_energies(step%requests, counts(2))) call close_increment( &
                scene%ledger, scene%system, motion%motion)
+         call check_energies(scene%ledger, motion%motion%t, error)
+         if (allocated(error)) return
          n_events = scene%n_events
          call count_events(simulation)
          call record_increment(output%results, scene, simulation%contact, motion, step%requests, &
@@ -329,6 +336,10 @@ contains
          call flush_now_and_then(output, scene%system%cost, error)
          if (allocated(error)) return
          call next_increment(scene%system%cost)
+         if (scene%settings%anchored) then
+            call check_interpolation(scene%ledger, motion%motion%t, error)
+            if (allocated(error)) return
+         end if
          call check_balance(scene%ledger, step, motion%motion%t, error)
       end associate
    end subroutine finish_increment

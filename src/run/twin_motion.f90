@@ -91,7 +91,7 @@ contains
          deallocate (error)
          ! not what the ladder foresaw: the fine motion alone goes in smaller increments
          call put_back(simulation, fine)
-         call halve(self%ladder, self%dt)
+         call halve(self%ladder, self%dt, .false.)
          self%dt = self%dt/2.0_wp
       end do
       self%n = self%n + 1
@@ -114,7 +114,7 @@ contains
          dt = within(self, left)
          if (self%t_start + self%step_time + dt > limit .and. &
                .not. lower_limit(self%ladder, dt/2.0_wp)) then
-            call halve(self%ladder, dt/2.0_wp)
+            call halve(self%ladder, dt/2.0_wp, .false.)
             cycle
          end if
          call put_back(simulation, self%coarse)
@@ -131,7 +131,7 @@ contains
             deallocate (error)
          end if
          self%n_cut = self%n_cut + 1
-         call halve(self%ladder, dt/2.0_wp)
+         call halve(self%ladder, dt/2.0_wp, simulation%scene%n_events == self%coarse%n_events)
       end do
       if (ratio > 0.0_wp) self%proven = dt
       if (dt >= 2.0_wp*self%ladder%dt) call step_up(self%ladder, ratio)
