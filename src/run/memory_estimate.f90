@@ -16,6 +16,7 @@ module memory_estimate
    private
 
    public :: memory_type, item_length, estimate_memory, add_step_memory, memory_text
+   public :: item_matrices, item_frames, item_rows, item_contact
 
    integer, parameter :: item_length = 24
    integer, parameter :: n_items = 6
@@ -33,6 +34,8 @@ module memory_estimate
    type :: memory_type
       real(wp) :: items(n_items) = 0.0_wp
       real(wp) :: start_up = 0.0_wp
+   contains
+      procedure :: total
    end type memory_type
 
 contains
@@ -181,13 +184,20 @@ contains
             simulation%scene%settings%method == method_transformation) n = 4
    end function n_matrices
 
+   !> The most that is held at once.
+   pure real(wp) function total(self)
+      class(memory_type), intent(in) :: self
+
+      total = max(self%start_up, sum(self%items))
+   end function total
+
    !> "memory: 120 MB (model 80, matrices 30, ...)".
    pure function memory_text(self) result(line)
       type(memory_type), intent(in) :: self
       character(len=:), allocatable :: line
       integer :: i
 
-      line = 'memory: '//megabytes(max(self%start_up, sum(self%items)))//' MB ('
+      line = 'memory: '//megabytes(self%total())//' MB ('
       do i = 1, n_items
          if (i > 1) line = line//', '
          line = line//trim(names(i))//' '//megabytes(self%items(i))

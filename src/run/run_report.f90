@@ -18,6 +18,7 @@ module run_report
    use increment_count, only: count_increments
    use scene_setup, only: simulation_type
    use run_log, only: log_type, say
+   use feature_report, only: percent
    use command_line, only: version_text
    implicit none
    private
@@ -300,17 +301,6 @@ contains
          call say(log, 'cost: '//line)
       end associate
    end subroutine report_cost
-
-   !> "12 %".
-   pure function percent(part, whole) result(text)
-      real(wp), intent(in) :: part, whole
-      character(len=:), allocatable :: text
-      real(wp) :: share
-
-      share = 0.0_wp
-      if (whole > 0.0_wp) share = 100.0_wp*part/whole
-      text = to_text(nint(share))//' %'
-   end function percent
 
    !> What contact has cost, and how often the fictitious force had to be found otherwise.
    subroutine report_contact(simulation, log)

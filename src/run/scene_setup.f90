@@ -49,6 +49,7 @@ module scene_setup
       real(wp) :: critical_gamma = -1.0_wp       !! for which `critical` holds, -1 for none
       integer(int64) :: n_events(5) = 0          !! by event_ kinds, over the whole run
       integer :: most_touching = 0               !! rows in contact at once
+      logical, allocatable :: has_met(:)         !! by contact pairs
    end type simulation_type
 
 contains
@@ -73,6 +74,7 @@ contains
       if (allocated(error)) return
       self%scene%impulse = [(0.0_wp, i=1, self%scene%rows%n)]
       self%scene%curvature = self%scene%impulse
+      allocate (self%has_met(size(self%contact%names)), source=.false.)
       call check_freedoms_named(self, error)
       if (allocated(error)) return
       call initial_motion(self, error)
