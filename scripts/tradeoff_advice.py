@@ -5,15 +5,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-LEAST_ORDER = 0.3         # below, an error does not go down with the step
 FEWEST = 3                # points that a fit needs
 LARGEST = 0.5             # beyond it an error says nothing but that all is wrong
-# Ways in which points lie on a line: rms of log10(error) about it, least slope, and whether the line
-# must go down to the finest step
-CLEAN, SCATTERED = (0.08, LEAST_ORDER, False), (0.25, 0.5, True)
+# Ways in which points lie on a line: rms of log10(error) about it, least slope (below, an error does
+# not go down with the step), and whether the line must go down to the finest step
+CLEAN, SCATTERED = (0.08, 0.5, False), (0.25, 0.7, True)
 FLAT = 1.3                # largest over smallest error of steps that make no difference
 ROUND_OFF = 1e-11         # errors as small as this are none
-SAME_FLOOR = 0.3          # a part of the last error on the line that finer steps must fall below
 
 
 @dataclass
@@ -46,13 +44,14 @@ class Fit:
     rows: list = field(default_factory=list)      # those on the line
     verdict: str = "too few points"
     floor: float = None                           # where finer steps gain nothing more
+    of_tolerance: bool = False                    # the order is that in TOLERANCE
 
     @property
     def text(self):
         """In words, for legends."""
         if not self.rows:
             return self.verdict
-        order = f"order {self.order:.2f}"
+        order = f"order {self.order:.2f}" + (" in TOLERANCE" if self.of_tolerance else "")
         return order if self.floor is None else f"{order}, floor {self.floor:.1e}"
 
 
@@ -90,28 +89,44 @@ def fit_series(rows, error, cost):
         return Fit(verdict=f"no convergence (errors above {LARGEST})") if wrong else Fit()
     x = np.log10([step_of(r) for r in small])
     y = np.log10([r.errors[error] for r in small])
-    window = best_window(x, y, *CLEAN) or best_window(x, y, *SCATTERED)
+    flat = flat_tail(y)
+    part = slice(0, len(y) - flat)
+    window = asymptotic_part(x[part], y[part])
+    floor = float(np.median(10.0 ** y[-flat:])) if flat else None
     if window is None:
-        return without_order(x, y)
+        order, deviation, _ = line(x, y)
+        falls = order >= CLEAN[1] and np.all(np.diff(y) < math.log10(FLAT))
+        return Fit(order, deviation, verdict=f"levels off at {floor:.1e}" if flat else
+                   "no clear order" if falls else f"no convergence (slope {order:.2f})")
     first, last, order, deviation = window
-    chosen, after = small[first:last], 10.0 ** y[last:]
-    floor = None
-    if last < len(small):
-        end = 10.0 ** y[last - 1]
-        if after.max() > 1.5 * end > 1.5 * ROUND_OFF * 1e3:
+    end, after = 10.0 ** y[last - 1], 10.0 ** y[last:]
+    if len(after) and end > 1e3 * ROUND_OFF:
+        if after.max() > 1.5 * end:
             return Fit(order, deviation, verdict="no convergence (errors grow again)")
-        if after.min() > SAME_FLOOR * end or len(after) > 1:
-            floor = float(np.median(after))
-    return Fit(order, deviation, cost_slope(chosen, error, cost), chosen, "", floor)
+        if len(after) > 1 and after.max() > 2.0 * after.min():
+            lowest = f"{after.min():.1e}"
+            return Fit(order, deviation, verdict=f"no convergence (scatters down to {lowest})")
+    if len(after) > 1 and floor is None:
+        floor = float(np.median(after))
+    chosen = small[first:last]
+    return Fit(order, deviation, cost_slope(chosen, error, cost), chosen, "", floor,
+               chosen[0].point.tolerance is not None)
 
 
-def without_order(x, y):
-    """What is to be said of points on no falling line."""
-    order, deviation, _ = line(x, y)
-    level = 10.0 ** y[len(y) // 2 :]
-    if level.max() <= FLAT * level.min():
-        return Fit(order, deviation, verdict=f"levels off at {level[-1]:.1e}")
-    return Fit(order, deviation, verdict=f"no convergence (slope {order:.2f})")
+def asymptotic_part(x, y):
+    """Where the points are on a line, as `best_window` has it: a clean one unless one twice as long
+    goes through scattered points."""
+    clean, scattered = best_window(x, y, *CLEAN), best_window(x, y, *SCATTERED)
+    if clean and scattered:
+        lengths = [x[window[0]] - x[window[1] - 1] for window in (clean, scattered)]
+        return clean if lengths[0] > 0.5 * lengths[1] else scattered
+    return clean or scattered
+
+
+def flat_tail(y):
+    """How many of the finest points are at one level; 0 if that is less than a fit needs."""
+    n = max((n for n in range(1, len(y) + 1) if np.ptp(y[-n:]) <= math.log10(FLAT)), default=0)
+    return n if n >= FEWEST else 0
 
 
 def best_window(x, y, scatter, least, to_the_end):
@@ -142,7 +157,8 @@ def cost_at(fit, members, error, cost, wanted):
     the second value is False); None where there is no line to go by."""
     rows = [r for r in members if r.good(error) and r.errors[error] > 0.0 and r.costs.get(cost)]
     for coarse, fine in zip(rows, rows[1:]):
-        if coarse.errors[error] >= wanted > fine.errors[error] and reaches(rows, fine, error, wanted):
+        between = coarse.errors[error] >= wanted > fine.errors[error]
+        if between and reaches(rows, fine, error, wanted):
             part = math.log(coarse.errors[error] / wanted) / math.log(
                 coarse.errors[error] / fine.errors[error])
             return coarse.costs[cost] * (fine.costs[cost] / coarse.costs[cost]) ** part, True
@@ -193,7 +209,11 @@ class Choice:
     @property
     def text(self):
         """Settings and step in words."""
-        return f"{self.point.series} with {self.point.step_text}"
+        plain = not self.point.settings and self.point.tolerance is None
+        series = "the deck as it is" if plain else self.point.series
+        if self.point.tolerance is not None:
+            return series.removesuffix("TOLERANCE") + self.point.step_text
+        return f"{series} with {self.point.step_text}"
 
 
 def choices(rows, error, cost, wanted):
@@ -245,14 +265,14 @@ def advise(rows, error, cost, wanted):
     )
     cheaper = [choice for choice in found if choice.cost < best.cost]
     if not cheaper:
-        return Advice(words + "; nothing cheaper was run.", best)
+        return Advice(words + "; nothing cheaper that was run ended well.", best)
     # the most accurate of the cheaper ones that were not a lucky hit, else of all
     honest = [c for c in cheaper if c.error + c.bar > wanted] or cheaper
     other = min(honest, key=lambda choice: choice.error)
-    loss = other.error / best.error if best.error > 0.0 else math.inf
+    loss = f", {other.error / best.error:.3g} times as much" if best.error > ROUND_OFF else ""
     return Advice(
         words + f"; the next cheaper one, {other.text}, costs {amount(other.cost, cost)} and is off "
-        f"by {off(other)}, {loss:.3g} times as much.", best,
+        f"by {off(other)}{loss}.", best,
     )
 
 
@@ -272,6 +292,8 @@ def nothing_serves(rows, found, error, cost, wanted):
     )
     fits = [fit_series(members, error, cost) for (_, series), members in series_of(rows).items()
             if series == best.point.series]
+    if any(fit.verdict == Fit().verdict for fit in fits):
+        return words + "; more steps of it would show whether smaller ones do."
     orders = [fit.order for fit in fits if fit.rows and fit.floor is None]
     if len(orders) < len(fits) or best.point.tolerance is not None or best.bar > best.error:
         return words + "; it does not get better with the step alone."
@@ -297,7 +319,7 @@ def amount(value, cost):
 def choose_cost(rows):
     """What to count: solutions, unless schemes without any or by elements alone are compared."""
     good = [row for row in rows if row.state == "good"]
-    mixed = any(row.point.settings.get("scheme") or row.point.settings.get("solver") for row in good)
+    mixed = any({"scheme", "solver"} & set(row.point.settings) for row in good)
     if not mixed and all(row.costs.get("solves") for row in good):
         return "solves"
     known = all("cpu_seconds" in row.costs for row in good)

@@ -20,6 +20,7 @@ ERRORS = ["displacement", "force", "impulse", "energy"]
 MOST_ROWS = 20000
 MOST_COLUMNS = 40
 LEAST_ORDER = 0.3           # below, differences of successive runs show no limit
+ROUND_OFF = 1e-12           # runs that differ by no more agree
 LEAST_COMMON = 8            # times that runs must share to be compared
 
 
@@ -148,9 +149,13 @@ class Reference:
 
 
 def errors_against(trace, reference):
-    """The errors of a trace against a reference, at the times that the trace has of it."""
+    """The errors of a trace against a reference: at the times of both where there are enough (between
+    the times of the reference a velocity may jump), else at all times of the trace."""
     truth = reference.trace
-    inside = (trace.time >= truth.time[0] - 1e-12) & (trace.time <= truth.time[-1] * (1 + 1e-9))
+    inside = trace.time <= truth.time[-1] * (1 + 1e-9)
+    shared = inside & has_times(truth, trace.time)
+    if np.count_nonzero(shared) >= LEAST_COMMON:
+        inside = shared
     times = trace.time[inside]
     with np.errstate(all="ignore"), warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)
@@ -170,7 +175,7 @@ def errors_against(trace, reference):
 
 def at_times(trace, times):
     """Displacements at other times: those of the rows where times agree, else by Hermite's cubic; in
-    an interval with a jump of the velocity, by straight lines from its nearer side."""
+    an interval in which the velocity jumps, from its end on the same side of the jump."""
     t = trace.time
     near = np.clip(np.searchsorted(t, times), 1, len(t) - 1)
     left, right = near - 1, near
@@ -183,8 +188,10 @@ def at_times(trace, times):
         + h * (x * (1 - x) ** 2 * va - x**2 * (1 - x) * vb)
     )
     straight = a + x * (b - a)
-    jump = np.searchsorted(trace.jumps, t[left]) != np.searchsorted(trace.jumps, t[right])
-    side = np.where(x < 0.5, a + x * h * va, b - (1 - x) * h * vb)
+    first = np.searchsorted(trace.jumps, t[left])
+    jump = first != np.searchsorted(trace.jumps, t[right])
+    when = np.append(trace.jumps, np.inf)[first]
+    side = np.where(times < when, a + x * h * va, b - (1 - x) * h * vb)
     found = np.where(jump, side, cubic)
     found = np.where(np.isfinite(found), found, straight)
     found = np.where(x < 1e-7, a, found)
@@ -205,13 +212,15 @@ def extrapolate(traces):
     second = largest_difference(runs[1], runs[2])
     order = observed_order(first, second, h1, h2, h3)
     names = f"dt = {h1:.3g}, {h2:.3g}, {h3:.3g}"
+    if max(first, second) <= ROUND_OFF * largest(runs[2]):
+        return Reference(fine, spread_of(runs), f"the finest run; all agree ({names})", order, True)
     if not order > LEAST_ORDER:
         spread = spread_of(runs)
         return Reference(fine, spread, f"the finest run; no convergence seen ({names})", order)
     order = min(order, 8.0)
     limit = richardson(fine, runs[1], runs[2], order, h2, h3)
     earlier = richardson(middle, runs[0], runs[1], order, h1, h2)
-    bars = errors_against(earlier, Reference(limit, {}, ""))
+    bars = errors_against(at_common(earlier, times), Reference(limit, {}, ""))
     text = f"Richardson's limit of {names}, observed order {order:.2f}"
     return Reference(limit, bars, text, order, True)
 
@@ -220,15 +229,20 @@ def common_times(*traces):
     """The times that all traces have."""
     times = traces[0].time
     for trace in traces[1:]:
-        place = np.clip(np.searchsorted(trace.time, times), 1, len(trace.time) - 1)
-        gap = np.minimum(abs(trace.time[place] - times), abs(trace.time[place - 1] - times))
-        times = times[gap <= 1e-9 * max(times[-1], 1e-300)]
+        times = times[has_times(trace, times)]
     if len(times) < LEAST_COMMON:
         raise ScriptError(
             f"the finest runs share {len(times)} times only: give --dt as first:last:count, whose "
             "steps have times in common"
         )
     return times
+
+
+def has_times(trace, times):
+    """Which of the times a trace has."""
+    place = np.clip(np.searchsorted(trace.time, times), 1, len(trace.time) - 1)
+    gap = np.minimum(abs(trace.time[place] - times), abs(trace.time[place - 1] - times))
+    return gap <= 1e-9 * max(trace.time[-1], 1e-300)
 
 
 def at_common(trace, times):
@@ -244,6 +258,11 @@ def largest_difference(one, other):
     if len(one.u):
         return float(np.max(np.abs(one.u - other.u)))
     return float(np.max(np.abs(one.impulse - other.impulse)))
+
+
+def largest(trace):
+    """The largest displacement, or impulse where no displacement is printed."""
+    return float(np.max(np.abs(trace.u if len(trace.u) else trace.impulse)))
 
 
 def observed_order(first, second, h1, h2, h3):

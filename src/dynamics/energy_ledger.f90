@@ -35,7 +35,9 @@ module energy_ledger
       real(wp) :: scale = 0.0_wp                !! largest energy or work met so far
       !> Kinetic and strain energy and plastic work at the end of the increment at hand, where the
       !> step has found them on its way.
-      real(wp), allocatable :: found(:)
+      real(wp) :: found(3) = 0.0_wp
+      logical :: has_found = .false.
+      real(wp) :: time = 0.0_wp                 !! of the energies
    end type ledger_type
 
 contains
@@ -144,6 +146,7 @@ contains
       self%external_work = self%external_work + external_work
       self%damping = self%damping + damping
       self%found = energies
+      self%has_found = .true.
    end subroutine record_found
 
    !> Energies at the end of an increment and the balance error.
@@ -153,17 +156,18 @@ contains
       type(state_type), intent(in) :: state
       integer :: outer
 
-      if (allocated(self%found)) then
+      if (self%has_found) then
          self%kinetic = self%found(1)
          self%strain = self%found(2)
          self%plastic = self%found(3)
-         deallocate (self%found)
+         self%has_found = .false.
       else
          call enter(system%cost, phase_elements, outer)
          self%kinetic = dot_product(state%v, inertia_force(system%structure, state%v))/2.0_wp
          call find_stored(system, state, self%strain, self%plastic)
          call leave(system%cost, outer)
       end if
+      self%time = state%t
       self%strain = self%strain + sum(self%stored)
       self%total = self%kinetic + self%strain
       self%balance_error = self%total + self%damping + self%plastic + self%friction &

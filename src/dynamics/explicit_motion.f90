@@ -7,7 +7,7 @@ module explicit_motion
    use structure, only: elastic_force, damping_force
    use external_load, only: load_at
    use prescribed_motion, only: are_at_rest
-   use motion_state, only: state_type
+   use motion_state, only: state_type, exchange
    use cost_account, only: enter, leave, phase_elements
    use equation_of_motion, only: system_type, count_updates
    use energy_ledger, only: ledger_type, record_found
@@ -106,7 +106,7 @@ contains
       call count_updates(system, scheme_explicit)
       call elastic_force(system%structure, scheme_explicit, state%d, state%history, self%force, &
             self%history, energy(2:3))
-      call swap(state%history, self%history)
+      call exchange(state%history, self%history)
       if (self%damped) call damping_force(system%structure, scheme_explicit, state%v, self%force)
       call leave(system%cost, outer)
       if (size(self%load) > 0) self%force = self%force - self%load
@@ -142,15 +142,6 @@ contains
       call damping_force(system%structure, scheme_explicit, v, self%force)
       lost = lost + dot_product(self%change, self%force)/2.0_wp
    end subroutine add_damping_work
-
-   pure subroutine swap(a, b)
-      real(wp), allocatable, intent(inout) :: a(:), b(:)
-      real(wp), allocatable :: kept(:)
-
-      call move_alloc(a, kept)
-      call move_alloc(b, a)
-      call move_alloc(kept, b)
-   end subroutine swap
 
    !> d and v go to their predictors, the force to zero.
    subroutine predict(dt, gamma, state, force)

@@ -10,15 +10,15 @@
 module gauss_step
    use kinds, only: wp, int64
    use errors, only: error_type
+   use cost_account, only: enter, leave, charge, phase_elements, phase_factor, phase_solve
    use mesh, only: scheme_implicit
    use dof_map, only: reduce, expand, follow_constraints
-   use structure, only: elastic_force, damping_force, inertia_force
+   use structure, only: damping_force, inertia_force
    use external_load, only: load_at
    use prescribed_motion, only: impose_motion
    use motion_state, only: state_type
-   use equation_of_motion, only: system_type, impose, count_updates
+   use equation_of_motion, only: system_type, impose, resist
    use gauss_matrices, only: prepare_gauss, solve_gauss
-   use cost_account, only: enter, leave, charge, phase_elements, phase_factor, phase_solve
    use reactions, only: reaction_forces
    implicit none
    private
@@ -95,31 +95,24 @@ contains
       logical, intent(in) :: whole               !! the whole step, not a part of one
       complex(wp), intent(inout) :: a(:)         !! (n_freedoms)
       type(error_type), allocatable, intent(out) :: error
-      complex(wp), dimension(size(a)) :: v, d, force
+      complex(wp), dimension(size(a)) :: v, force
       complex(wp) :: s
-      integer :: i, outer
+      integer :: i
 
       s = rate/dt
       v = start%v + a/s
-      d = start%d + v/s
-      call enter(system%cost, phase_elements, outer)
-      force = -resistance(system, start%history, d, v, a)
-      ! real and imaginary part
-      call count_updates(system, scheme_implicit)
-      call count_updates(system, scheme_implicit)
-      call leave(system%cost, outer)
+      force = -resistance(system, start, start%d + v/s, v, a)
       do i = 1, 2
          force = force + joint(i)*load_at(system%loads, size(a), start%t + point(i)*dt)
       end do
-      call prepare(system, s, dt, whole, error)
+      call prepare(system, dt, whole, error)
       if (allocated(error)) return
       a = a + solve_complex(system, force)
    end subroutine free_acceleration
 
-   !> Makes the matrix of a step size ready; books what that takes.
-   subroutine prepare(system, s, dt, whole, error)
+   !> Makes the matrix of a step ready; books what that takes.
+   subroutine prepare(system, dt, whole, error)
       type(system_type), intent(inout) :: system
-      complex(wp), intent(in) :: s
       real(wp), intent(in) :: dt
       logical, intent(in) :: whole
       type(error_type), allocatable, intent(out) :: error
@@ -130,8 +123,8 @@ contains
       call enter(system%cost, phase_elements, outer)
       seconds = system%matrices%factor_seconds
       n_assembled = system%matrices%n_assembled
-      call prepare_gauss(system%gauss, system%matrices, system%structure, system%profile, s, dt, &
-            whole, error)
+      call prepare_gauss(system%gauss, system%matrices, system%structure, system%profile, rate/dt, &
+            dt, whole, error)
       call charge(system%cost, phase_factor, system%matrices%factor_seconds - seconds)
       system%cost%element_updates = system%cost%element_updates + system%matrices%n_assembled &
             - n_assembled
@@ -139,20 +132,21 @@ contains
    end subroutine prepare
 
    !> K d + C v + M a.
-   function resistance(system, history, d, v, a) result(force)
-      type(system_type), intent(in) :: system
-      real(wp), intent(in) :: history(:)
-      complex(wp), intent(in) :: d(:), v(:), a(:)
+   function resistance(system, start, d, v, a) result(force)
+      type(system_type), intent(inout) :: system
+      type(state_type), intent(in) :: start
+      complex(wp), intent(in) :: d(:), v(:), a(:)   !! (n_freedoms)
       complex(wp) :: force(size(a))
-      real(wp) :: parts(size(a), 2), updated(size(history))
+      type(state_type) :: part
+      real(wp) :: parts(size(a), 2)
 
-      parts = 0.0_wp
-      updated = history
-      call elastic_force(system%structure, scheme_implicit, real(d, wp), history, parts(:, 1), &
-            updated)
-      call elastic_force(system%structure, scheme_implicit, aimag(d), history, parts(:, 2), updated)
-      call damping_force(system%structure, scheme_implicit, real(v, wp), parts(:, 1))
-      call damping_force(system%structure, scheme_implicit, aimag(v), parts(:, 2))
+      part = start
+      part%d = real(d, wp)
+      part%v = real(v, wp)
+      call resist(system, scheme_implicit, part, start%history, parts(:, 1))
+      part%d = aimag(d)
+      part%v = aimag(v)
+      call resist(system, scheme_implicit, part, start%history, parts(:, 2))
       if (any(abs(a) > 0.0_wp)) then
          parts(:, 1) = parts(:, 1) + inertia_force(system%structure, real(a, wp))
          parts(:, 2) = parts(:, 2) + inertia_force(system%structure, aimag(a))

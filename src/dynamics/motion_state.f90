@@ -5,6 +5,7 @@ module motion_state
    private
 
    public :: state_type, newmark_type, predict, hold, correct
+   public :: copy_state, exchange_states, exchange
 
    !> Motion of all freedoms at total time t.
    type :: state_type
@@ -28,7 +29,7 @@ contains
       type(newmark_type), intent(in) :: newmark
       type(state_type), intent(in) :: state
       real(wp), intent(in) :: dt
-      type(state_type), intent(out) :: trial
+      type(state_type), intent(inout) :: trial    !! its arrays are used again
 
       trial%t = state%t + dt
       trial%d = state%d + dt*state%v + dt**2/2.0_wp*(1.0_wp - 2.0_wp*newmark%beta)*state%a
@@ -66,5 +67,41 @@ contains
       trial%v = trial%v + newmark%gamma*dt*delta_a
       trial%d = trial%d + newmark%beta*dt**2*delta_a
    end subroutine correct
+
+   !> Copies a state into the arrays of another, where it has them.
+   pure subroutine copy_state(from, to)
+      type(state_type), intent(in) :: from
+      type(state_type), intent(inout) :: to
+
+      to%t = from%t
+      to%d = from%d
+      to%v = from%v
+      to%a = from%a
+      to%history = from%history
+   end subroutine copy_state
+
+   !> Exchanges two states; nothing is copied.
+   pure subroutine exchange_states(one, other)
+      type(state_type), intent(inout) :: one, other
+      real(wp) :: t
+
+      t = one%t
+      one%t = other%t
+      other%t = t
+      call exchange(one%d, other%d)
+      call exchange(one%v, other%v)
+      call exchange(one%a, other%a)
+      call exchange(one%history, other%history)
+   end subroutine exchange_states
+
+   !> Exchanges two arrays.
+   pure subroutine exchange(one, other)
+      real(wp), allocatable, intent(inout) :: one(:), other(:)
+      real(wp), allocatable :: kept(:)
+
+      call move_alloc(one, kept)
+      call move_alloc(other, one)
+      call move_alloc(kept, other)
+   end subroutine exchange
 
 end module motion_state

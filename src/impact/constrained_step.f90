@@ -9,7 +9,9 @@ module constrained_step
    use motion_state, only: newmark_type, state_type, correct
    use equation_of_motion, only: system_type, predict_motion, start_near, fixed_force, residual, &
          solve_motion, prepare_motion, settle_massless
-   use impact_scene, only: scene_type, contact_motion_type, record_residual, note_contact_force
+   use impact_scene, only: scene_type, contact_motion_type, copy_contact_motion, &
+         record_residual, note_contact_force
+   use constraint_rows, only: law_motion
    use step_contact, only: contact_step_type, add_contact_forces, smallest_beta
    use row_placement, only: place_rows
    use overlap_force, only: add_overlap_force
@@ -32,7 +34,7 @@ contains
       type(contact_motion_type), intent(in) :: from
       real(wp), intent(in) :: dt
       real(wp), intent(in) :: beta
-      type(contact_motion_type), intent(out) :: to
+      type(contact_motion_type), intent(inout) :: to   !! at the end; its arrays are used again
       type(error_type), allocatable, intent(out) :: error
       logical, intent(in), optional :: held(:)   !! (n_rows) rows held bilaterally, the others free
       type(newmark_type) :: newmark
@@ -45,7 +47,7 @@ contains
       call enter(scene%system%cost, phase_other, outer)
       newmark = scene%system%newmark
       newmark%beta = beta
-      to = from
+      call copy_contact_motion(from, to)
       to%jump = 0.0_wp
       to%left_out = 0.0_wp
       call predict_motion(scene%system, from%motion, dt, beta, to%motion)
@@ -59,7 +61,7 @@ contains
          call prepare_motion(scene%system, dt, beta, to%motion%d, from%motion%history, error)
          if (allocated(error)) return
          delta = solve_motion(scene%system, psi)
-         if (scene%rows%n > 0) call push_apart(scene, step, beta*dt**2, from, to, delta, &
+         if (may_push(scene, step, to)) call push_apart(scene, step, beta*dt**2, from, to, delta, &
                error)
          if (allocated(error)) return
          call correct(newmark, dt, delta, to%motion)
@@ -75,6 +77,24 @@ contains
       call settle_massless(scene%system, from%motion, to%motion)
       call leave(scene%system%cost, outer)
    end subroutine advance_smoothly
+
+   !> Whether contact forces may act in a step: rows whose law speaks of the motion alone have none
+   !> unless they touch. Without any the forces of the motion are zero.
+   function may_push(scene, step, to) result(may)
+      type(scene_type), intent(in) :: scene
+      type(contact_step_type), intent(in) :: step
+      type(contact_motion_type), intent(inout) :: to
+      logical :: may
+
+      may = scene%rows%n > 0
+      if (.not. may .or. any(scene%rows%law /= law_motion)) return
+      may = any(to%touching)
+      if (allocated(step%held)) may = any(step%held)
+      if (may) return
+      to%lambda = 0.0_wp
+      to%tau = 0.0_wp
+      to%sticking = .false.
+   end function may_push
 
    !> Adds to the motion what contact forces of all kinds do.
    subroutine push_apart(scene, step, beta_dt2, from, to, delta, error)

@@ -43,7 +43,7 @@ contains
       type(contact_motion_type), intent(inout) :: motion
       type(progress_type), intent(inout) :: progress
       type(span_type), intent(out) :: span
-      type(contact_motion_type), intent(out) :: next
+      type(contact_motion_type), intent(inout) :: next   !! gets the end; its arrays are used again
       logical, intent(out) :: release(:)         !! (n_rows) rows to let go at the end of the span
       type(error_type), allocatable, intent(out) :: error
       logical :: opening(size(release))

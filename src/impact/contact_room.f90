@@ -8,6 +8,10 @@ module contact_room
 
    public :: no_room
 
+   !> Where rows depend on each other, conditions that stay violated by more than this part of the
+   !> largest contradict each other.
+   real(wp), parameter, public :: room_tolerance = 1.0e-3_wp
+
 contains
 
    subroutine no_room(node_id, t, overlap, error)

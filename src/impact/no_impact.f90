@@ -2,7 +2,7 @@
 module no_impact
    use kinds, only: wp
    use errors, only: error_type
-   use impact_scene, only: scene_type, contact_motion_type, accept_span
+   use impact_scene, only: scene_type, contact_motion_type, accept_span, exchange_motions
    use impact_method, only: impact_method_type
    use contact_impulses, only: restart_acceleration
    use constrained_step, only: advance_smoothly
@@ -46,10 +46,12 @@ contains
          call advance_explicitly(scene%explicit, scene%system, scene%ledger, motion%motion, dt)
          return
       end if
+      call exchange_motions(scene%spare, next)
       call advance_smoothly(scene, motion, dt, scene%system%newmark%beta, next, error)
       if (allocated(error)) return
       call accept_span(scene, motion, next)
-      motion = next
+      call exchange_motions(motion, next)
+      call exchange_motions(scene%spare, next)
    end subroutine advance
 
    !> Whether the step to come is wholly explicit. A jump of the velocity that dampers are to resist

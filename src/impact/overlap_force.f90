@@ -7,7 +7,7 @@ module overlap_force
    use constraint_rows, only: row_gaps, row_accelerations, gap_size, law_overlap
    use impact_scene, only: scene_type, contact_motion_type, gap_tolerance
    use row_compliance, only: compliance_type, find_compliance, unit_motions
-   use contact_room, only: no_room
+   use contact_room, only: no_room, room_tolerance
    implicit none
    private
 
@@ -17,8 +17,6 @@ module overlap_force
    real(wp), parameter :: force_tolerance = 1.0e-14_wp
    !> Where alpha is so close to one that more rounds are needed, the fixed point is solved for.
    integer, parameter :: most_rounds = 10000
-   !> Overlap missing from the answer, in parts of the largest, that tells of rows without one.
-   real(wp), parameter :: room_tolerance = 1.0e-6_wp
 
    !> Overlapping rows with the rows in sustained contact held beside them.
    type :: overlap_type
@@ -135,7 +133,7 @@ contains
       missing = free_gaps + (1.0_wp + alpha)/alpha*matmul(overlap%w, lambda)
       worst = minloc(missing, dim=1)
       if (missing(worst) >= -room_tolerance*maxval(abs(free_gaps))) return
-      call no_room(scene%rows%node_id(overlap%rows(worst)), t, -free_gaps(worst), error)
+      call no_room(scene%rows%node_id(overlap%rows(worst)), t, -missing(worst), error)
    end subroutine check_room
 
    !> P from the overlap of the iteration at hand alone: lambda = W^-1 alpha (-g) on the rows with

@@ -23,13 +23,26 @@ contains
       type(span_type), intent(in) :: span
       type(progress_type), intent(inout) :: progress
       type(error_type), allocatable, intent(out) :: error
+
+      motion%fresh = .false.
+      motion%touching = motion%touching .and. span%held
+      if (.not. any(motion%touching)) return
+      call settle_touching(scene, from, motion, span, progress, error)
+   end subroutine settle_span
+
+   !> The same where rows touch.
+   subroutine settle_touching(scene, from, motion, span, progress, error)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(in) :: from
+      type(contact_motion_type), intent(inout) :: motion
+      type(span_type), intent(in) :: span
+      type(progress_type), intent(inout) :: progress
+      type(error_type), allocatable, intent(out) :: error
       real(wp) :: span_impulse(scene%rows%n)
       logical, dimension(scene%rows%n) :: thrown, stuck
 
       span_impulse = (motion%motion%t - from%motion%t)*(from%lambda + motion%lambda)/2.0_wp
       stuck = motion%sticking .and. .not. from%sticking .and. may_hit(scene%rows)
-      motion%touching = motion%touching .and. span%held
-      motion%fresh = .false.
       call follow_wall(scene, motion, span_impulse, progress%dt, thrown, error)
       if (allocated(error)) return
       if (any(thrown)) call release_rows(scene, motion, thrown, progress)
@@ -41,6 +54,6 @@ contains
       end if
       call project_touching(scene, motion, span%gap_limit, &
             rate_tolerance*rate_size(scene%rows, motion%motion), error)
-   end subroutine settle_span
+   end subroutine settle_touching
 
 end module span_ends

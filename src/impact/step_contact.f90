@@ -10,6 +10,7 @@ module step_contact
          slip_increments, sticks, gap_size, law_motion, law_closed, law_penalty, law_overlap
    use impact_scene, only: scene_type, contact_motion_type, gap_tolerance
    use row_compliance, only: compliance_type, find_compliance, pushed, join_rates, split_forces
+   use contact_room, only: no_room, room_tolerance
    implicit none
    private
 
@@ -110,7 +111,28 @@ contains
       end if
       call split_forces(compliance, forces, to%lambda, to%tau)
       delta = delta + pushed(scene, compliance, forces)
+      call check_room(scene, compliance, step%to_displacement*(matmul(w, forces) + q), &
+            step%to_displacement*maxval(abs(q)), to%motion%t, error)
    end subroutine find_forces
+
+   !> Fictitious forces of rows that no motion can open together do not exist. (Of rows that are
+   !> closed the gaps are looked at when they are put right.)
+   subroutine check_room(scene, compliance, missing, largest, t, error)
+      type(scene_type), intent(in) :: scene
+      type(compliance_type), intent(in) :: compliance
+      real(wp), intent(in) :: missing(:)         !! gaps that the forces leave less what they should
+      real(wp), intent(in) :: largest            !! of the gaps without them
+      real(wp), intent(in) :: t
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      do i = 1, compliance%n
+         if (scene%rows%law(compliance%rows(i)) /= law_overlap) cycle
+         if (missing(i) >= -room_tolerance*largest) cycle
+         call no_room(scene%rows%node_id(compliance%rows(i)), t, -missing(i), error)
+         return
+      end do
+   end subroutine check_room
 
    !> What the law of a row adds to its compliance: the spring of a penalty; for the fictitious
    !> force ((1 + alpha)/alpha) W, so that the overlap left is g_free/(1 + alpha).

@@ -91,6 +91,12 @@ contains
       real(wp) :: limit, sure
       character(len=:), allocatable :: over, cure
 
+      if (.not. critical%omega <= huge(critical%omega)) then
+         call fail_at(error, model%source, step%procedure_place, 'the highest frequency is not ' &
+               //'finite'//element_of(model, critical)//': stiffness over mass overflows', &
+               'give the model numbers that can be divided by each other: other units, more mass')
+         return
+      end if
       limit = stable_frequency(scene%system%newmark)
       if (critical%omega*step%dt*(1.0_wp - slack) <= limit) return
       sure = certain_frequency(scene%system, critical)

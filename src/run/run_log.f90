@@ -6,14 +6,21 @@ module run_log
    implicit none
    private
 
-   public :: log_type, open_log, close_log, say, note, write_status
+   public :: log_type, open_log, close_log, say, note, write_status, has_line
 
    !> Where lines go. Without files (a mere check), to the terminal alone.
    type :: log_type
       integer :: log_unit = -1
       integer :: status_unit = -1
       logical :: terminal = .true.          !! copies of what is said
+      logical :: has_held = .false.         !! an increment whose status line is not written
+      integer :: held_counts(4) = 0
+      real(wp) :: held_times(3) = 0.0_wp
    end type log_type
+
+   !> So many increments of a step have a line each; of later ones one in 10 up to ten times as
+   !> many, one in 100 up to a hundred times as many, and so on.
+   integer, parameter :: n_lines = 10000
 
 contains
 
@@ -31,6 +38,8 @@ contains
       if (allocated(error)) return
       write (self%status_unit, '(a)') '# step  increment    step time      total time     '// &
             'increment      iterations  events'
+      write (self%status_unit, '(a)') '# a line an increment; beyond 10000 of a step one '// &
+            'in 10, beyond 100000 one in 100, ..., with all iterations and events since the last'
    end subroutine open_log
 
    subroutine open_text(path, unit, error)
@@ -62,20 +71,51 @@ contains
       if (self%log_unit /= -1) write (self%log_unit, '(a)') line
    end subroutine note
 
-   !> One line of the status file an increment.
+   !> Whether an increment of a step has a line in the status file.
+   pure function has_line(increment)
+      integer, intent(in) :: increment           !! of the step
+      logical :: has_line
+      integer :: last, stride
+
+      last = n_lines
+      stride = 1
+      do while (increment > last .and. last < 100000000)
+         last = 10*last
+         stride = 10*stride
+      end do
+      has_line = modulo(increment, stride) == 0
+   end function has_line
+
+   !> One line of the status file an increment, or a few where there are very many. The last
+   !> increment of a step and of the run always has one.
    subroutine write_status(self, counts, times)
-      type(log_type), intent(in) :: self
+      type(log_type), intent(inout) :: self
       integer, intent(in) :: counts(4)           !! step, increment, iterations, events
       real(wp), intent(in) :: times(3)           !! step time, total time, increment
 
       if (self%status_unit == -1) return
-      write (self%status_unit, '(i6,i11,3es15.6,i12,i8)') counts(1:2), times, counts(3:4)
+      if (self%has_held .and. counts(1) > self%held_counts(1)) call write_held(self)
+      self%held_counts(1:2) = counts(1:2)
+      self%held_counts(3:4) = self%held_counts(3:4) + counts(3:4)
+      self%held_times = times
+      self%has_held = .true.
+      if (has_line(counts(2))) call write_held(self)
    end subroutine write_status
+
+   subroutine write_held(self)
+      type(log_type), intent(inout) :: self
+
+      write (self%status_unit, '(i6,i11,3es15.6,i12,i8)') self%held_counts(1:2), &
+            self%held_times, self%held_counts(3:4)
+      self%held_counts(3:4) = 0
+      self%has_held = .false.
+   end subroutine write_held
 
    !> Closes the files.
    subroutine close_log(self)
       type(log_type), intent(inout) :: self
 
+      if (self%has_held) call write_held(self)
       if (self%log_unit /= -1) close (self%log_unit)
       if (self%status_unit /= -1) close (self%status_unit)
       self%log_unit = -1

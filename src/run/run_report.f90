@@ -18,6 +18,7 @@ module run_report
    use increment_count, only: count_increments
    use scene_setup, only: simulation_type
    use run_log, only: log_type, say
+   use feature_report, only: percent
    use command_line, only: version_text
    implicit none
    private
@@ -176,9 +177,9 @@ contains
                line = 'transformation, steps of one size that begin at events'
             else
                line = 'transformation, beta of the impact step ' &
-                     //to_text(impact_beta(simulation%scene, &
-                     simulation%model%steps(1)%dt))//' ('//trim(merge('given    ', &
-                     'automatic', settings%beta_choice == beta_given))//')'
+                     //to_text(impact_beta(simulation%scene))//' ('//trim(merge( &
+                     'given           ', 'that of the step', &
+                     settings%beta_choice == beta_given))//')'
             end if
          end select
       end associate
@@ -252,6 +253,7 @@ contains
    subroutine report_summary(simulation, log)
       type(simulation_type), intent(in) :: simulation
       type(log_type), intent(in) :: log
+      character(len=:), allocatable :: line
 
       associate (n => simulation%n_events, ledger => simulation%scene%ledger)
          call say(log, 'reached time '//to_text(simulation%motion%motion%t))
@@ -262,7 +264,10 @@ contains
                'warning: MAX EVENTS was reached; rows captured by it: ' &
                //to_text(n(event_limit)))
          if (simulation%scene%rows%n > 0) call report_contact(simulation, log)
-         call say(log, 'energy: kinetic '//to_text(ledger%kinetic)//', strain ' &
+         line = 'energy: '
+         if (ledger%time < simulation%motion%motion%t) line = 'energy at time ' &
+               //to_text(ledger%time)//': '
+         call say(log, line//'kinetic '//to_text(ledger%kinetic)//', strain ' &
                //to_text(ledger%strain) &
                //', damping '//to_text(ledger%damping)//', friction '//to_text(ledger%friction) &
                //', impacts '//to_text(ledger%impact_loss) &
@@ -296,17 +301,6 @@ contains
          call say(log, 'cost: '//line)
       end associate
    end subroutine report_cost
-
-   !> "12 %".
-   pure function percent(part, whole) result(text)
-      real(wp), intent(in) :: part, whole
-      character(len=:), allocatable :: text
-      real(wp) :: share
-
-      share = 0.0_wp
-      if (whole > 0.0_wp) share = 100.0_wp*part/whole
-      text = to_text(nint(share))//' %'
-   end function percent
 
    !> What contact has cost, and how often the fictitious force had to be found otherwise.
    subroutine report_contact(simulation, log)

@@ -19,6 +19,8 @@ from carom_case import Checks, Run                                           # n
 # Chains 106 and 39 step far above 2 over their highest frequency: paths dip more than once and
 # contact forces are bent in a step.
 TRANSFORMATION, FICTITIOUS = [*range(80), 106], range(80, 106)
+# Chains with so few events a step that many rows are captured by the limit.
+LIMITED = [*range(107, 140), 161, 252, 271, 289, 298]
 STEPS = 300
 # Most that energy may grow in one increment, in parts of the scale.
 GAIN = 1e-4
@@ -54,6 +56,8 @@ def make_chain(seed):
             add('DASHPOT1', f'D{i}', [i + 1],
                 [f'*DASHPOT, ELSET=D{i}', '1', f'{10**rng.uniform(-2, 0):.4f}'])
     method = 'FICTITIOUS FORCE' if fictitious else 'TRANSFORMATION, BETA=1/4'
+    if seed in LIMITED:
+        method += f', MAX EVENTS={1 + seed % 4}'
     lines += ['*SURFACE INTERACTION, NAME=I', f'*IMPACT, METHOD={method}{restitution}']
     for i in range(n - 1):
         add('GAPUNI', f'P{i}', [i + 1, i + 2],
@@ -88,15 +92,11 @@ def find_faults(seed, folder):
         return ['still running after 60 s']
     if done.returncode:
         return [f'status {done.returncode}: {done.stderr.strip()[:200]}']
-    run = Run(0, '', result)
-    # at MAX EVENTS rows are captured by force, as the log warns: the balance error shows what that
-    # costs, and the chain is chaotic down to the last digit of the machine
-    capped = 'MAX EVENTS was reached' in path.with_suffix('.log').read_text()
-    return judge(run, fictitious, kinetic, weight, capped)
+    return judge(Run(0, '', result), fictitious, kinetic, weight)
 
 
-def judge(run, fictitious, kinetic, weight, capped):
-    """Checks of a finished chain; a capped one's energy is not judged."""
+def judge(run, fictitious, kinetic, weight):
+    """Checks of a finished chain."""
     faults = []
     contacts = [name for name in run.file['history'] if name.startswith('contact')]
     gaps = np.concatenate([np.ravel(run[f'history/{name}/CDIS']) for name in contacts])
@@ -107,14 +107,14 @@ def judge(run, fictitious, kinetic, weight, capped):
     balance = np.abs(run['energy/balance_error']).max()/scale
     if not (np.all(np.isfinite(gaps)) and np.all(np.isfinite(energy))):
         return ['not finite']
-    if not (capped or balance < 1e-8):
+    if not balance < 1e-8:
         faults.append(f'energy balance off by {balance:.2e}')
     if fictitious:
         return faults
     if gaps.min() < -1e-9:
         faults.append(f'penetration {gaps.min():.2e}')
     gain = np.diff(energy).max()/scale
-    if not (capped or gain < GAIN):
+    if not gain < GAIN:
         faults.append(f'energy gain {gain:.2e} in one increment')
     return faults
 
@@ -125,7 +125,7 @@ def main():
         Path(f'chain_{sys.argv[2]}.inp').write_text(make_chain(int(sys.argv[2]))[0])
         return
     checks = Checks()
-    seeds = [*TRANSFORMATION, *FICTITIOUS]
+    seeds = [*TRANSFORMATION, *FICTITIOUS, *LIMITED]
     with tempfile.TemporaryDirectory(prefix='carom_') as name, ThreadPoolExecutor(2) as pool:
         faults = dict(zip(seeds, pool.map(lambda seed: find_faults(seed, Path(name)), seeds)))
     for seed in seeds:
@@ -135,6 +135,8 @@ def main():
                    f'failing chains of {len(TRANSFORMATION)} by transformation')
     checks.at_most(sum(bool(faults[seed]) for seed in FICTITIOUS), 0,
                    f'failing chains of {len(FICTITIOUS)} by fictitious force')
+    checks.at_most(sum(bool(faults[seed]) for seed in LIMITED), 0,
+                   f'failing chains of {len(LIMITED)} at MAX EVENTS')
     checks.finish()
 
 
