@@ -1,4 +1,4 @@
-"""Decks as cards that can be edited, and runs of carom on them: from carom_deck import Deck, run_deck.
+"""Decks as cards that can be edited, and runs of carom: from carom_deck import Deck, run_deck.
 
     deck = Deck.read("input/bar/bar_implicit.inp")
     deck.set("IMPACT", METHOD="PENALTY", STIFFNESS=1000, BETA=None)     None takes a parameter away
@@ -320,7 +320,8 @@ class Done:
         self.late = late
         log = Path(result).with_suffix(".log")
         self.log = log.read_text(errors="replace") if log.is_file() else ""
-        self.last_line = (self.log.strip().splitlines() or messages.strip().splitlines() or [""])[-1]
+        text = self.log.strip() or messages.strip()
+        self.last_line = text.splitlines()[-1] if text else ""
         self.costs = read_costs(result, self.log)
 
     @property

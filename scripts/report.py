@@ -109,6 +109,16 @@ def source_sections(figures, runs, folder):
     return [lead, *(figure_section(figure, runs, folder) for figure in figures)]
 
 
+def guarded(name, part, carom, given):
+    """The sections of a part; an error in it becomes a section of its own that says so."""
+    try:
+        return part(carom, Path(given.output), given.jobs)
+    except Exception:       # it must not take the page with it
+        section = Section(name, f"The part '{name}'")
+        section.fail(traceback.format_exc(limit=-3))
+        return [section]
+
+
 def facts(carom, given):
     """What the page says of itself: program, command."""
     said = subprocess.run([carom, "--version"], capture_output=True, text=True).stdout.strip()
@@ -132,7 +142,7 @@ def main():
     for name, part in PARTS.items():
         if name in chosen:
             print(f"computing the part '{name}'", flush=True)
-            sections += part(carom, Path(given.output), given.jobs)
+            sections += guarded(name, part, carom, given)
     path = Path(given.output) / "report.html"
     path.write_text(page(TITLE, [SOURCE, HOW, facts(carom, given)], sections), encoding="utf-8")
     print(path)

@@ -15,9 +15,9 @@ COLOURS = (BLUE, RED, ORANGE, GREEN, PURPLE, SKY)
 
 # Steps of the schemes whose orders are fitted; the last ones are for the cost at a given error
 ORDER_STEPS = {
-    "transformation": (0.16, 0.08, 0.04, 0.02, 0.01, 0.0025, 0.00025, 0.00008),
+    "transformation": (0.16, 0.08, 0.04, 0.02, 0.01, 0.0025, 0.00025, 0.00007),
     "fictitious force, pure": (0.04, 0.02, 0.01, 0.005, 0.0025, 0.00125, 0.000625),
-    "fictitious force, e = 1": (0.04, 0.02, 0.01, 0.005, 0.0025, 0.00125, 0.0005, 0.00015),
+    "fictitious force, e = 1": (0.04, 0.02, 0.01, 0.005, 0.0025, 0.00125, 0.0005, 0.00006),
     "ORDER=4": (0.32, 0.16, 0.08, 0.04, 0.02, 0.01, 0.005),
 }
 PAIRS = ((0.5, 0.25), (0.6, 0.3), (0.5, 1.0 / 6.0), (0.6, 0.3025), (0.5, 0.3))

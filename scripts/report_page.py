@@ -35,6 +35,7 @@ class Section:
     body: list = field(default_factory=list)
     verdicts: list = field(default_factory=list)
     failure: str = ""
+    output: str = ""        # what a script that made it has printed
     level: int = 2
 
     def paragraph(self, text):

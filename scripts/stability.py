@@ -59,8 +59,10 @@ def steps_part(carom, quick, folder, report):
         report.store(f"{group}/omega", omega, "frequency times step")
         report.store(f"{group}/radius", radii, f"measured spectral radius of a step: {scheme.name}")
         report.store(f"{group}/theory", theory, "the same of the closed-form matrix")
-        # a double root moves by the square root of a round-off
-        allowed = 1e-9 + 3e-5 * (omega / 1e6)**0.5 + np.where(omega > scheme.limit(), 1e-6 * omega, 0)
+        allowed = 2e-9 + np.where(omega > scheme.limit(), 1e-6 * omega, 0.0)
+        if scheme.gamma > 0.5 and not scheme.alpha:
+            # two equal roots at large omega h: they move by the square root of a round-off
+            allowed += 5e-3 * (omega / 1e6)**0.5
         away = np.abs(omega / scheme.limit() - 1.0) > 1e-4
         error = np.abs(radii / theory - 1.0) / allowed
         report.check(f"{scheme.name}: spectral radius against theory, part of what round-off allows",
@@ -68,10 +70,12 @@ def steps_part(carom, quick, folder, report):
     trapezoidal = measured[0]
     inside = trapezoidal[1] <= 1e3
     report.check("β = 1/4: |radius − 1| up to ωh = 1e3", np.abs(trapezoidal[2][inside] - 1).max(), 1e-12)
-    report.check("β = 1/4: |radius − 1| up to ωh = 1e6", np.abs(trapezoidal[2] - 1).max(), 1e-9)
+    report.check("β = 1/4: |radius − 1| up to ωh = 1e6", np.abs(trapezoidal[2] - 1).max(), 1e-10)
     steps = 200 if quick else 2000
     omega, errors = measure_floor(carom, steps, 1 if quick else 4)
     report.store("floor/omega", omega, "frequency times step")
+    report.check(f"β = 1/4: energy error in {steps} steps, in round-offs × max(ωh, 100)",
+                 (errors / (2.2e-16 * np.maximum(omega, 100.0))).max(), 30.0)
     report.store("floor/energy_error", errors, f"β = 1/4: largest energy error in {steps} steps")
     if not quick:
         draw_steps(measured, (omega, errors, steps), folder / "steps.png")
@@ -121,17 +125,18 @@ def impact_part(carom, quick, folder, report):
     report.store("impact_step/omega", omega, "frequency times step")
     report.store("impact_step/delta", deltas, "part of the step after the impact")
     report.check("impact step, AUTO: |radius − 1|", np.nanmax(np.abs(growth["AUTO"] - 1)), 1e-11)
-    small = ((omega > 0.1) & (omega < 0.5))[:, None] & np.isfinite(growth["1/6"])
+    small = ((omega > 0.15) & (omega < 0.5))[:, None] & np.isfinite(growth["1/6"])
     worst = np.nanmax(np.where(small, growth["1/6"] - 1, np.nan) / omega[:, None]**4)
-    report.check("impact step, β = 1/6: (radius − 1) × 256 / (ωh)⁴ up to ωh = 0.5", 256 * worst, 1.02)
+    report.check("impact step, β = 1/6: (radius − 1) × 256 / (ωh)⁴ up to ωh = 0.5", 256 * worst, 1.03)
     every = {k: np.nanmax(recurring(omega, matrices["1/6"], k), axis=1) for k in EVERY}
-    kept = max(np.nanmax(np.abs(recurring(omega, matrices["AUTO"], k) - 1)) for k in EVERY)
-    report.check("impact every 1, 2, 5, 10 steps, AUTO: |radius − 1|", kept, 1e-11)
+    kept = np.nanmax([np.nanmax(np.abs(recurring(omega, matrices["AUTO"], k) - 1), axis=1)
+                      for k in EVERY], axis=0)
+    report.check("impact every 1, 2, 5, 10 steps, AUTO: |radius − 1|", kept.max(), 1e-11)
     for k, values in every.items():
         report.store(f"impact_step/every_{k}", values, f"β = 1/6 every {k} steps: growth a step")
     if not quick:
         shown = {"1/6": growth["1/6"], "1/4 (AUTO)": growth["AUTO"]}
-        draw_impact_steps(omega, deltas, shown, every, folder / "impact_step.png")
+        draw_impact_steps(omega, deltas, shown, (every, kept), folder / "impact_step.png")
 
 
 def recurring_part(carom, quick, folder, report):
@@ -174,8 +179,8 @@ def recurring_part(carom, quick, folder, report):
 
 def coupling_part(carom, quick, folder, report):
     """An implicit and an explicit spring on two masses."""
-    ratios = [1e-4, 1.0, 1e4] if quick else list(np.geomspace(1e-6, 1e6, 13))
-    omega = [0.1, 1.0, 1.99] if quick else [0.01, 0.1, 0.3, 0.6, 1.0, 1.4, 1.7, 1.9, 1.99, 1.999]
+    ratios = [1e-4, 1.0, 1e4] if quick else list(np.geomspace(1e-4, 1e4, 9))
+    omega = [0.1, 1.0, 1.99] if quick else list(np.geomspace(0.1, 1.99, 14))
     radii = {name: measure_coupling(carom, ratios, omega, inner) for name, inner in (
         ("outer spring explicit, inner implicit", False), ("inner spring explicit, outer implicit", True))}
     for i, (name, values) in enumerate(radii.items()):

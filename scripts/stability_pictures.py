@@ -49,43 +49,51 @@ def draw_steps(measured, floor, path):
 
 def draw_impact_steps(omega, deltas, found, recurring, path):
     """Growth of a step with an impact over frequency and place of the impact; of impacts every k
-    steps over frequency."""
+    steps (a dictionary with β = 1/6, and the worst of AUTO) over frequency."""
     figure, panels = plt.subplots(1, 3, figsize=(17, 5.6), layout="constrained")
     for axes, (beta, growth) in zip(panels, found.items()):
         shown = np.log10(np.maximum(growth - 1.0, 1e-16))
         picture = axes.pcolormesh(omega, deltas, shown.T, shading="nearest", cmap="cividis",
-                                  vmin=-16, vmax=1)
+                                  vmin=-12, vmax=2)
         axes.set(xscale="log", xlabel=FREQUENCY, ylabel="part of the step after the impact, δ",
                  title=f"A step with an impact, β = {beta}")
         limit = {"1/6": np.sqrt(12.0)}.get(beta)
+        if not np.isnan(growth).all() and np.nanmax(growth) - 1 < 1e-9:
+            axes.text(0.5, 0.5, f"radius − 1 below {np.nanmax(growth) - 1:.0e}\neverywhere",
+                      color="white", ha="center", va="center", fontsize=14, transform=axes.transAxes)
         if limit:
-            axes.axvline(limit, color="white", linestyle="--")
-            axes.text(1.1 * limit, 0.06, "limit of\nβ = 1/6", color="white", fontsize=11)
+            axes.axvline(limit, color="black", linestyle="--")
+            axes.text(1.15 * limit, 0.9, "limit of\nβ = 1/6", fontsize=12)
     figure.colorbar(picture, ax=panels[:2], label="log₁₀ (spectral radius − 1); white: no impact there")
     axes = panels[2]
-    for (k, growth), (colour, mark, line) in zip(recurring.items(), STYLES):
+    every, kept = recurring
+    for (k, growth), (colour, mark, line) in zip(every.items(), STYLES):
         axes.plot(omega, np.maximum(growth - 1.0, 1e-16), line, marker=mark, color=colour,
                   markersize=5, label=f"β = 1/6, every {k} steps" if k > 1 else "β = 1/6, every step")
     axes.plot(omega, omega**4 / 256.0, color="0.5", linewidth=1, label="(ωh)⁴ / 256")
-    axes.set(xscale="log", yscale="log", ylim=(1e-12, 1e2), xlabel=FREQUENCY,
+    axes.plot(omega, np.maximum(kept, 1e-16), color=PURPLE, label="β = 1/4 (AUTO), every 1 to 10 steps")
+    axes.set(xscale="log", yscale="log", ylim=(1e-16, 1e3), xlabel=FREQUENCY,
              ylabel="growth in a step (radius − 1), worst δ", title="The same every k steps")
-    axes.legend(loc="upper left")
+    axes.legend(loc="center right", bbox_to_anchor=(1.0, 0.42), fontsize=10)
     save(figure, path)
 
 
 def draw_recurring(omega, bouncing, courant, bars, path):
     """Energy growth where impacts recur by themselves: an oscillator, a bar."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(14, 5.8), layout="constrained")
-    for (name, rows), (colour, mark, line) in zip(bouncing.items(), STYLES):
-        left.plot(omega, np.maximum(rows[:, 1], 1e-16), line, marker=mark, color=colour, label=name)
-    left.axvline(0.5, color="0.5", linewidth=1)
-    left.text(0.52, 3e-15, "0.5", color="0.4")
-    left.set(xscale="log", yscale="log", ylim=(1e-16, 10), xlabel=FREQUENCY,
+    for (name, rows), (colour, mark, _) in zip(bouncing.items(), STYLES):
+        shown = np.where(rows[:, 0] - 1.0 > 1e-9, rows[:, 1], np.nan)
+        left.plot(omega, shown, mark, color=colour, markersize=7, label=name)
+        kept = rows[:, 0] - 1.0 <= 1e-9
+        left.plot(omega[kept], np.full(kept.sum(), 1e-9), mark, color=colour, fillstyle="none",
+                  markersize=7)
+    left.text(0.02, 0.04, "open marks: no gain", transform=left.transAxes, fontsize=11)
+    left.set(xscale="log", yscale="log", ylim=(1e-10, 10), xlabel=FREQUENCY,
              ylabel="ln(largest energy / first) / impacts", title="One oscillator bounces, e = 1")
     for (name, rows), (colour, mark, line) in zip(bars.items(), STYLES):
-        right.plot(courant, np.clip(rows[:, 0] - 1.0, 1e-16, 1e30), line, marker=mark, color=colour,
+        right.plot(courant, np.clip(rows[:, 0] - 1.0, 1e-12, 1e20), line, marker=mark, color=colour,
                    label=name)
-    right.set(xscale="log", yscale="log", ylim=(1e-16, 1e30), xlabel="Courant number",
+    right.set(xscale="log", yscale="log", ylim=(1e-13, 1e22), xlabel="Courant number",
               ylabel="largest energy gain / first energy", title="A bar bounces at its end, e = 1")
     for axes in (left, right):
         axes.legend(loc="best", fontsize=10)

@@ -3,18 +3,20 @@
     tradeoff.py input/sdof/sdof.inp --build build/carom --define e=1,0.6 --dt 0.2:0.001:8 --for 1e-3
     tradeoff.py input/bar/bar_implicit.inp --method TRANS,FICT,LAGR,PENALTY --stiffness 1e3,1e5
 
-Errors are taken against the exact solution, which most decks of input/ have, or against the limit of
-the finest runs. Writes tradeoff.h5, tradeoff.csv, tradeoff.png and recommended.inp into the folder -o;
-points that have run are kept there and not run again. Values of an option are separated by commas;
-`none` leaves a parameter out, steps and tolerances may also be first:last:count in equal ratios.
+Errors are taken against the exact solution, which most decks of input/ have, or against the limit
+of the finest runs. Writes tradeoff.h5, tradeoff.csv, tradeoff.png and recommended.inp into the folder
+-o; points that have run are kept there and not run again. Values of an option are separated by
+commas; `none` leaves a parameter out, steps and tolerances may also be first:last:count in equal
+ratios.
 
-On a farm: --emit writes one command a line (for GNU parallel, or one a task of a Slurm array), and the
-same line with --collect instead gathers what they have done.
+On a farm: --emit writes one command a line (for GNU parallel, or one a task of a Slurm array), and
+the same line with --collect instead gathers what they have done.
 """
 
 import argparse
 import os
 import signal
+import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -25,7 +27,7 @@ from tradeoff_advice import Row, advise, choose_cost, cost_at, fit_series, serie
 from tradeoff_errors import ERRORS, Trace, errors_against, exact_errors
 from tradeoff_exact import CASES, exact_solution, recognise
 from tradeoff_grid import (
-    AXES, complete_requests, default_axes, edited_deck, make_grid, parse_definitions, parse_steps,
+    AXES, Point, complete_requests, default_axes, edited_deck, make_grid, parse_definitions, parse_steps,
     parse_values,
 )
 from tradeoff_output import print_table, write_csv, write_h5
@@ -48,6 +50,7 @@ def make_parser():
     grid.add_argument("--tolerance", help="runs with *DYNAMIC, TOLERANCE=: 1e-2:1e-6:5")
     grid.add_argument("--define", action="append", default=[], metavar="NAME=V,V",
                       help="problems: values of a *PARAMETER, as e=1,0.6; may be given again")
+    grid.add_argument("--quick", action="store_true", help="fewer steps where none are given")
     for name, (_, _, _, words) in AXES.items():
         grid.add_argument(f"--{name}", metavar="V,V", dest=f"axis_{name}", help=words)
     judged = parser.add_argument_group("how it is judged")
@@ -99,6 +102,15 @@ def complete(given):
     return deck
 
 
+def accepted(given, settings):
+    """Whether the program takes the deck with these settings."""
+    deck = edited_deck(given.deck, Point(settings=settings, dt=Deck.read(given.deck).time_step()[0]))
+    with tempfile.TemporaryDirectory() as work:
+        deck.write(f"{work}/deck.inp")
+        words = [str(given.carom), "check", f"{work}/deck.inp"]
+        return subprocess.run(words, capture_output=True, check=False).returncode == 0
+
+
 def grid_of(deck, given):
     """The points that the options ask for."""
     axes = {name: parse_values(getattr(given, f"axis_{name}"), name) for name in AXES
@@ -109,8 +121,8 @@ def grid_of(deck, given):
         tolerances = [number_text(float(f"{t:.6g}"))
                       for t in parse_steps(given.tolerance, "--tolerance")[0]]
     if not axes and not tolerances:
-        axes = default_axes(deck)
-    points = make_grid(deck, axes, parse_definitions(given.define), steps, tolerances)
+        axes = default_axes(deck, lambda settings: accepted(given, settings))
+    points = make_grid(deck, axes, parse_definitions(given.define), steps, tolerances, given.quick)
     for point in points:      # a case may have no exact solution for these parameters
         values = {"end": deck.time_step(point.problem)[1], **point.problem}
         if given.exact and exact_solution(given.exact, deck, values) is None:
@@ -136,7 +148,8 @@ def judge(points, given):
     for row in rows:
         reference = references.get(row.point.problem_text)
         trace = load_trace(folder, row.point.key)
-        if trace is not None and trace.finite and row.state in ("good", "capped", "diverged"):
+        able = reference and trace is not None and trace.finite
+        if able and row.state in ("good", "capped", "diverged"):
             row.errors = errors_against(trace, reference)
             row.bars = dict(reference.bars)
     given.references = references
@@ -149,7 +162,7 @@ def report(points, given):
     groups = series_of(rows)
     rows = [row for members in groups.values() for row in members]
     cost = given.cost or choose_cost(rows)
-    if not any(cost in row.costs for row in rows):
+    if given.cost and not any(cost in row.costs for row in rows):
         known = sorted({name for row in rows for name in row.costs})
         raise ScriptError(f"no run has the cost '{cost}'; there are: {', '.join(known) or 'none'}")
     fits = {(*key, error): fit_series(members, error, cost)
@@ -161,13 +174,20 @@ def report(points, given):
     for problem, text in truth.items():
         print(f"errors{' for ' + problem if problem else ''} against {text}")
     advice = advise(rows, given.errors[0], cost, given.wanted_error)
+    unknown = {row.point.problem_text for row in rows} - set(truth)
+    if unknown:
+        raise ScriptError(
+            "no exact solution is known, and no series has three good runs whose limit could stand for "
+            "one: give more steps (--dt), or other settings (--reference)"
+        )
     print(f"\n{advice.sentence}")
     write_csv(given.folder / "tradeoff.csv", rows)
     write_h5(given.folder / "tradeoff.h5", rows, fits, spent, {
         "deck": str(given.deck), "recommendation": advice.sentence, "cost": cost,
         "errors": ",".join(given.errors), "truth": "; ".join(truth.values()),
     })
-    figure = draw(rows, given.errors, cost, fits, given.wanted_error, advice.choice, given.deck.name)
+    figure = draw(rows, given.errors, cost, fits, given.wanted_error, advice.choice,
+                  given.deck.name)
     save(figure, given.folder / "tradeoff.png")
     if advice.choice:
         path = given.folder / "recommended.inp"
@@ -200,7 +220,7 @@ def verify(choice, points, given):
             worst = max(worst, errors[error])
     truth = "" if given.exact else " against a run twice as fine as all before"
     if worst > given.wanted_error:
-        raise ScriptError(f"the recommendation does not hold: run again it is off by {worst:.3g}{truth}")
+        raise ScriptError(f"the recommendation fails: run again it is off by {worst:.3g}{truth}")
     print(f"verified: run again it is off by {worst:.3g}{truth}, at most {given.wanted} was wanted")
 
 

@@ -44,13 +44,14 @@ class Fit:
     rows: list = field(default_factory=list)      # those on the line
     verdict: str = "too few points"
     floor: float = None                           # where finer steps gain nothing more
+    of_tolerance: bool = False                    # the order is that in TOLERANCE
 
     @property
     def text(self):
         """In words, for legends."""
         if not self.rows:
             return self.verdict
-        order = f"order {self.order:.2f}"
+        order = f"order {self.order:.2f}" + (" in TOLERANCE" if self.of_tolerance else "")
         return order if self.floor is None else f"{order}, floor {self.floor:.1e}"
 
 
@@ -94,19 +95,22 @@ def fit_series(rows, error, cost):
     floor = float(np.median(10.0 ** y[-flat:])) if flat else None
     if window is None:
         order, deviation, _ = line(x, y)
-        return Fit(order, deviation, verdict=f"levels off at {floor:.1e}" if flat
-                   else f"no convergence (slope {order:.2f})")
+        falls = order >= CLEAN[1] and np.all(np.diff(y) < math.log10(FLAT))
+        return Fit(order, deviation, verdict=f"levels off at {floor:.1e}" if flat else
+                   "no clear order" if falls else f"no convergence (slope {order:.2f})")
     first, last, order, deviation = window
     end, after = 10.0 ** y[last - 1], 10.0 ** y[last:]
     if len(after) and end > 1e3 * ROUND_OFF:
         if after.max() > 1.5 * end:
             return Fit(order, deviation, verdict="no convergence (errors grow again)")
         if len(after) > 1 and after.max() > 2.0 * after.min():
-            return Fit(order, deviation, verdict=f"no convergence (scatters down to {after.min():.1e})")
+            lowest = f"{after.min():.1e}"
+            return Fit(order, deviation, verdict=f"no convergence (scatters down to {lowest})")
     if len(after) > 1 and floor is None:
         floor = float(np.median(after))
-    return Fit(order, deviation, cost_slope(small[first:last], error, cost), small[first:last], "",
-               floor)
+    chosen = small[first:last]
+    return Fit(order, deviation, cost_slope(chosen, error, cost), chosen, "", floor,
+               chosen[0].point.tolerance is not None)
 
 
 def asymptotic_part(x, y):
@@ -153,7 +157,8 @@ def cost_at(fit, members, error, cost, wanted):
     the second value is False); None where there is no line to go by."""
     rows = [r for r in members if r.good(error) and r.errors[error] > 0.0 and r.costs.get(cost)]
     for coarse, fine in zip(rows, rows[1:]):
-        if coarse.errors[error] >= wanted > fine.errors[error] and reaches(rows, fine, error, wanted):
+        between = coarse.errors[error] >= wanted > fine.errors[error]
+        if between and reaches(rows, fine, error, wanted):
             part = math.log(coarse.errors[error] / wanted) / math.log(
                 coarse.errors[error] / fine.errors[error])
             return coarse.costs[cost] * (fine.costs[cost] / coarse.costs[cost]) ** part, True
@@ -204,7 +209,11 @@ class Choice:
     @property
     def text(self):
         """Settings and step in words."""
-        return f"{self.point.series} with {self.point.step_text}"
+        plain = not self.point.settings and self.point.tolerance is None
+        series = "the deck as it is" if plain else self.point.series
+        if self.point.tolerance is not None:
+            return series.removesuffix("TOLERANCE") + self.point.step_text
+        return f"{series} with {self.point.step_text}"
 
 
 def choices(rows, error, cost, wanted):
@@ -256,7 +265,7 @@ def advise(rows, error, cost, wanted):
     )
     cheaper = [choice for choice in found if choice.cost < best.cost]
     if not cheaper:
-        return Advice(words + "; nothing cheaper was run.", best)
+        return Advice(words + "; nothing cheaper that was run ended well.", best)
     # the most accurate of the cheaper ones that were not a lucky hit, else of all
     honest = [c for c in cheaper if c.error + c.bar > wanted] or cheaper
     other = min(honest, key=lambda choice: choice.error)
@@ -283,6 +292,8 @@ def nothing_serves(rows, found, error, cost, wanted):
     )
     fits = [fit_series(members, error, cost) for (_, series), members in series_of(rows).items()
             if series == best.point.series]
+    if any(fit.verdict == Fit().verdict for fit in fits):
+        return words + "; more steps of it would show whether smaller ones do."
     orders = [fit.order for fit in fits if fit.rows and fit.floor is None]
     if len(orders) < len(fits) or best.point.tolerance is not None or best.bar > best.error:
         return words + "; it does not get better with the step alone."
@@ -308,7 +319,7 @@ def amount(value, cost):
 def choose_cost(rows):
     """What to count: solutions, unless schemes without any or by elements alone are compared."""
     good = [row for row in rows if row.state == "good"]
-    mixed = any(row.point.settings.get("scheme") or row.point.settings.get("solver") for row in good)
+    mixed = any({"scheme", "solver"} & set(row.point.settings) for row in good)
     if not mixed and all(row.costs.get("solves") for row in good):
         return "solves"
     known = all("cpu_seconds" in row.costs for row in good)

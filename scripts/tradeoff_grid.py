@@ -1,4 +1,4 @@
-"""The grid of tradeoff.py: which runs of a deck are to be compared, and the deck of each of them."""
+"""The grid of tradeoff.py: which runs of a deck are to be compared, and the deck of each."""
 
 import hashlib
 import itertools
@@ -22,14 +22,14 @@ AXES = {
     "stiffness": ("IMPACT", "STIFFNESS", METHODS[2:3], "of *IMPACT, penalty only"),
     "mass": ("CONTACT PAIR", "MASS", METHODS, "of *CONTACT PAIR: REDISTRIBUTED or none"),
     "scheme": ("ELEMENT GROUP", "SCHEME", METHODS, "of all elements: IMPLICIT, EXPLICIT, AUTO"),
-    "order": ("DYNAMIC", "ORDER", METHODS, "of *DYNAMIC: 2 or 4"),
+    "order": ("DYNAMIC", "ORDER", METHODS[:1], "of *DYNAMIC: 2 or 4, transformation only"),
     "beta": ("DYNAMIC", "BETA", METHODS, "Newmark's, of *DYNAMIC"),
     "gamma": ("DYNAMIC", "GAMMA", METHODS, "Newmark's, of *DYNAMIC"),
     "alpha": ("DYNAMIC", "ALPHA", METHODS, "of *DYNAMIC: damping of high frequencies"),
     "solver": ("DYNAMIC", "SOLVER", METHODS, "of *DYNAMIC: AUTO, SKYLINE, MUMPS"),
 }
 # What a scheme of fourth order does without
-NOT_WITH_ORDER_4 = ("beta", "gamma", "alpha", "impact-beta")
+NOT_WITH_ORDER_4 = ("beta", "gamma", "alpha", "impact-beta", "events")
 MOST_POINTS = 100000
 
 
@@ -133,26 +133,29 @@ def common_steps(steps, end):
     return [(m, coarsest / m) for m in dict.fromkeys(ratios)]
 
 
-def default_axes(deck):
-    """What varies if nothing is asked for: what the deck's contact leaves open."""
-    if not deck.has("IMPACT") or squeezed(deck.get("IMPACT", "METHOD", "TRANSFORMATION")) not in (
-        "TRANSFORMATION", "FICTITIOUSFORCE",
-    ):
-        return {}
-    if deck.get("IMPACT", "RESTITUTION") is None:
-        return {"method": ["TRANSFORMATION", "FICTITIOUS FORCE", "LAGRANGE"]}
-    return {"method": METHODS[:2]}
+def default_axes(deck, accepts):
+    """What varies if nothing is asked for: methods and orders that the deck leaves open. `accepts` says
+    of settings whether the program takes the deck with them."""
+    axes = {}
+    if deck.has("IMPACT"):
+        axes["method"] = METHODS[:2]
+        if deck.get("IMPACT", "RESTITUTION") is None:
+            axes["method"] = [*METHODS[:2], METHODS[3]]
+        axes["method"] = [m for m in axes["method"] if accepts({"method": m})] or [own_method(deck)]
+    if accepts({**({"method": METHODS[0]} if axes else {}), "order": "4"}):
+        axes["order"] = ["2", "4"]
+    return axes
 
 
-def default_steps(deck, defined):
-    """The deck's own step, four times and an eighth of it, with those between in ratios of 2."""
+def default_steps(deck, defined, quick):
+    """The deck's own step, four times and an eighth (quick: a quarter) of it, in ratios of 2."""
     dt, _ = deck.time_step(defined)
     if dt is None:
-        raise ScriptError(f"'{deck.path}' has no *DYNAMIC step with a step size: nothing to compare")
-    return [dt * 2.0**i for i in (2, 1, 0, -1, -2, -3)]
+        raise ScriptError(f"'{deck.path}' has no *DYNAMIC step with a step size")
+    return [dt * 2.0**i for i in range(2, -3 if quick else -4, -1)]
 
 
-def make_grid(deck, axes, problems, steps, tolerances):
+def make_grid(deck, axes, problems, steps, tolerances, quick=False):
     """All points: for each problem every combination of settings and steps that means something.
 
     axes: {option: values}; problems: {name: values}; steps: (numbers, is_range) or None.
@@ -171,16 +174,16 @@ def make_grid(deck, axes, problems, steps, tolerances):
         problem = dict(zip(problems, values))
         for chosen in itertools.product(*axes.values()):
             settings = meaningful(deck, dict(zip(axes, chosen)))
-            for point in stepped(deck, problem, settings, steps, tolerances):
+            for point in stepped(deck, problem, settings, steps, tolerances, quick):
                 points.setdefault(repr(point), point)
     return list(points.values())
 
 
-def stepped(deck, problem, settings, steps, tolerances):
+def stepped(deck, problem, settings, steps, tolerances, quick):
     """The points of one series of a problem."""
     dt, end = deck.time_step(problem)
     if steps is None and not tolerances:
-        steps = (default_steps(deck, problem), True)
+        steps = (default_steps(deck, problem, quick), True)
     found = []
     if steps:
         numbers, is_range = steps
@@ -193,7 +196,7 @@ def check_axes(deck, axes):
     """Axes need the card that they change."""
     for name in axes:
         keyword = AXES[name][0]
-        if name != "scheme" and not deck.has(keyword):
+        if not (deck.has(keyword) or (name == "scheme" and deck.has("SOLID SECTION"))):
             raise ScriptError(f"--{name}: '{deck.path}' has no card *{keyword}")
     if "PENALTY" in axes.get("method", ()) and not (
         "stiffness" in axes or deck.get("IMPACT", "STIFFNESS")
@@ -203,9 +206,7 @@ def check_axes(deck, axes):
 
 def meaningful(deck, settings):
     """The settings that the method and the order know; others belong to other combinations."""
-    own = deck.get("IMPACT", "METHOD") or METHODS[0]
-    same = [m for m in METHODS if squeezed(m) == squeezed(own)]
-    method = settings.get("method") or (same or METHODS)[0]
+    method = settings.get("method") or own_method(deck)
     kept = {n: v for n, v in settings.items() if method in AXES[n][2]}
     if kept.get("order") == "4":
         kept = {n: v for n, v in kept.items() if n not in NOT_WITH_ORDER_4}
@@ -214,8 +215,15 @@ def meaningful(deck, settings):
     return kept
 
 
+def own_method(deck):
+    """METHOD of the deck."""
+    own = deck.get("IMPACT", "METHOD") or METHODS[0]
+    same = [method for method in METHODS if squeezed(method) == squeezed(own)]
+    return (same or METHODS)[0]
+
+
 def edited_deck(path, point, own_requests=False):
-    """The deck of a point: no fields, every increment in the tables, or what the deck itself asks."""
+    """The deck of a point: no fields, every increment in the tables; or its own requests."""
     deck = Deck.read(path)
     set_method(deck, point.settings)
     for name, value in point.settings.items():
@@ -227,6 +235,8 @@ def edited_deck(path, point, own_requests=False):
             deck.set(keyword, **{parameter.replace(" ", "_"): None if left_out else value})
     if point.settings.get("order") == "4":
         deck.set("DYNAMIC", BETA=None, GAMMA=None, ALPHA=None)
+        for card in deck.cards("IMPACT"):
+            card.set("EVENTS", None)
     if point.tolerance is None:
         deck.set_time_step(point.dt)
     else:
@@ -239,7 +249,7 @@ def edited_deck(path, point, own_requests=False):
 
 
 def set_method(deck, settings):
-    """METHOD, and the deck's own parameters that the method (or what goes with it) does not know."""
+    """METHOD, without those of the deck's own parameters that it does not know."""
     for card in deck.cards("IMPACT"):
         if "method" in settings:
             card.set("METHOD", settings["method"])

@@ -6,7 +6,8 @@ program carom
    use errors, only: error_type, status_done
    use command_line, only: command_type, read_command, usage_text, version_text, &
          command_run, command_check, command_version
-   use simulation, only: run_deck, check_deck
+   use simulation, only: run_deck
+   use deck_check, only: check_deck
    use threads, only: set_threads
    use parallel_ranks, only: start_ranks, end_ranks, my_rank
    use mumps_solver, only: serve_rank_zero, dismiss_ranks

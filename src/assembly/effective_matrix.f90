@@ -5,14 +5,14 @@ module effective_matrix
    use skyline_matrix, only: profile_type, new_profile, couple, skyline_type, new_skyline
    use element_groups, only: group_type
    use dof_map, only: dof_map_type
-   use element_sum, only: effective_element, has_implicit_matrix
+   use element_sum, only: effective_element, has_implicit_matrix, contributes
    use element_colours, only: colours_type, colour_elements
    use structure, only: structure_type, gather, group_history
    implicit none
    private
 
    public :: find_profile, assemble_effective, assemble_sum, mark_implicit
-   public :: couples_equations, count_coupled, equations_of, list_coupled
+   public :: couples_equations, count_coupled, count_parts, equations_of, list_coupled
 
    !> Elements from which threads share a group.
    integer, parameter :: worth_threads = 500
@@ -67,17 +67,28 @@ contains
       couples = has_implicit_matrix(group) .or. .not. group%lumped
    end function couples_equations
 
-   !> Elements of the groups that do.
-   pure function count_coupled(structure) result(n)
+   !> Elements whose matrices c_mass M + c_damping C + c_stiffness K takes.
+   pure function count_coupled(structure, factors) result(n)
       type(structure_type), intent(in) :: structure
+      real(wp), intent(in) :: factors(3)
       integer :: n
       integer :: g
 
       n = 0
       do g = 1, size(structure%groups)
-         if (couples_equations(structure%groups(g))) n = n + size(structure%groups(g)%member)
+         if (contributes(structure%groups(g), factors)) n = n + size(structure%groups(g)%member)
       end do
    end function count_coupled
+
+   !> The same of M, C and K one by one.
+   pure integer function count_parts(structure)
+      type(structure_type), intent(in) :: structure
+      real(wp), parameter :: one = 1.0_wp, none = 0.0_wp
+
+      count_parts = count_coupled(structure, [one, none, none]) &
+            + count_coupled(structure, [none, one, none]) &
+            + count_coupled(structure, [none, none, one])
+   end function count_parts
 
    !> The equations behind some freedoms, constraints followed.
    pure function equations_of(map, freedoms) result(equations)
@@ -187,7 +198,7 @@ contains
       type(colours_type) :: colours
       integer :: k, i, n
 
-      if (.not. couples_equations(group)) return
+      if (.not. contributes(group, factors)) return
       n = size(group%lm, 1)
       allocate (local(n, size(group%lm, 2)))
       call gather(group, d, local)

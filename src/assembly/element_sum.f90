@@ -6,7 +6,7 @@ module element_sum
    implicit none
    private
 
-   public :: effective_element, has_implicit_matrix
+   public :: effective_element, has_implicit_matrix, contributes
 
 contains
 
@@ -22,7 +22,7 @@ contains
       real(wp) :: part(size(total, 1), size(total, 2))
 
       total = 0.0_wp
-      if (.not. group%lumped) then
+      if (.not. group%lumped .and. abs(factors(1)) > 0.0_wp) then
          call group_mass(group, e, .false., part)
          total = factors(1)*part
       end if
@@ -42,5 +42,18 @@ contains
 
       has = group%scheme == scheme_implicit .and. any(group%element%uses(1))
    end function has_implicit_matrix
+
+   !> Whether elements of a group add anything to c_mass M + c_damping C + c_stiffness K beside
+   !> their lumped mass.
+   pure function contributes(group, factors)
+      type(group_type), intent(in) :: group
+      real(wp), intent(in) :: factors(3)
+      logical :: contributes
+
+      contributes = .not. group%lumped .and. abs(factors(1)) > 0.0_wp
+      if (contributes .or. .not. has_implicit_matrix(group)) return
+      contributes = abs(factors(3)) > 0.0_wp
+      contributes = contributes .or. (size(group%damping) > 0 .and. abs(factors(2)) > 0.0_wp)
+   end function contributes
 
 end module element_sum

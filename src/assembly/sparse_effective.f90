@@ -6,8 +6,8 @@ module sparse_effective
    use element_groups, only: group_type
    use dof_map, only: dof_map_type
    use structure, only: structure_type, gather, group_history
-   use effective_matrix, only: couples_equations, list_coupled
-   use element_sum, only: effective_element
+   use effective_matrix, only: list_coupled
+   use element_sum, only: effective_element, contributes
    implicit none
    private
 
@@ -57,7 +57,7 @@ contains
       real(wp), allocatable :: local(:, :), total(:, :), memory(:, :)
       integer :: e, n
 
-      if (.not. couples_equations(group)) return
+      if (.not. contributes(group, factors)) return
       n = size(group%lm, 1)
       allocate (local(n, size(group%lm, 2)), total(n, n))
       call gather(group, d, local)

@@ -81,7 +81,7 @@ contains
          margin = size_of_cell/2.0_wp + reach
          from = cell_of(self, grid, low - margin)
          to = cell_of(self, grid, high + margin)
-         if (product(real(to - from + 1, wp)) > real(size(self%edge), wp)) then
+         if (product(real(to, wp) - real(from, wp) + 1.0_wp) > real(size(self%edge), wp)) then
             call add_all(self, grid, from, to, found, n_found)
             cycle
          end if

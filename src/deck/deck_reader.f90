@@ -122,6 +122,11 @@ contains
 
       call read_nodes(model, deck, error)
       if (allocated(error)) return
+      if (model%nodes%n == 0) then
+         call fail_at(error, model%source, deck%cards(1)%place, 'the deck has no node', &
+               cure='add *NODE with the nodes of the model')
+         return
+      end if
       call read_elements(model, deck, error)
       if (allocated(error)) return
       call read_sets(model, deck, error)

@@ -13,6 +13,8 @@ module numbers
          1.0e13_wp, 1.0e14_wp, 1.0e15_wp, 1.0e16_wp, 1.0e17_wp, 1.0e18_wp, 1.0e19_wp, 1.0e20_wp, &
          1.0e21_wp, 1.0e22_wp]
 
+   character(len=*), parameter :: too_small = "' is too small: nothing but 0 is below 4.95e-324"
+
    interface
       !> The number at the start of a text that ends with a zero byte, correctly rounded.
       pure function strtod(text, rest) result(value) bind(c, name='strtod')
@@ -53,7 +55,8 @@ contains
       value = int(number)
    end subroutine parse_integer
 
-   !> A finite real: digits with a point or none, exponent marked by e or d.
+   !> A finite real: digits with a point or none, exponent marked by e or d. What would be rounded
+   !> to zero is refused too: it was not meant to be nothing.
    pure subroutine parse_real(string, value, cause)
       character(len=*), intent(in) :: string
       real(wp), intent(out) :: value
@@ -71,7 +74,7 @@ contains
       else if (n_digits + exponent > 309) then
          cause = "the number '"//string//"' is too large"
       else if (n_digits + exponent < -330) then
-         value = 0.0_wp
+         cause = "the number '"//string//too_small
       else if (mantissa < 2_int64**53 .and. n_digits <= 18 .and. abs(exponent) <= 22) then
          value = scaled(mantissa, exponent)
          if (string(1:1) == '-') value = -value
@@ -79,6 +82,7 @@ contains
          cause = "the number '"//string//"' is too large"
       else
          value = rounded(string)
+         if (.not. abs(value) > 0.0_wp) cause = "the number '"//string//too_small
       end if
    end subroutine parse_real
 

@@ -15,7 +15,7 @@ module effective_system
          factorize_sparse => factorize, solve_sparse => solve
    use mesh, only: scheme_implicit
    use structure, only: structure_type, freedom_name, count_resisting
-   use effective_matrix, only: assemble_effective, assemble_sum, count_coupled
+   use effective_matrix, only: assemble_effective, assemble_sum, count_coupled, count_parts
    use sparse_effective, only: find_pattern, assemble_sparse, fill_empty_diagonal
    use solver_choice, only: work_type, choice_type, first_choice, refine_choice
    implicit none
@@ -190,14 +190,14 @@ contains
          slot%is_sparse = .false.
          if (.not. keeps_parts(structure, factors) .or. profile_entries(profile) > most_kept) then
             call assemble_effective(structure, profile, d, history, factors, slot%matrix)
-            self%n_assembled = self%n_assembled + count_coupled(structure)
+            self%n_assembled = self%n_assembled + count_coupled(structure, factors)
             return
          end if
          if (.not. self%has_parts) then
             do i = 1, 3
                call assemble_sum(structure, profile, d, history, unit(:, i), self%parts(i))
             end do
-            self%n_assembled = self%n_assembled + 3*count_coupled(structure)
+            self%n_assembled = self%n_assembled + count_parts(structure)
             self%has_parts = .true.
          end if
          call combine(slot%matrix, factors, self%parts)
@@ -264,7 +264,7 @@ contains
 
       if (.not. keeps_parts(structure, factors)) then
          call assemble_sparse(structure, self%pattern, d, history, factors, values)
-         self%n_assembled = self%n_assembled + count_coupled(structure)
+         self%n_assembled = self%n_assembled + count_coupled(structure, factors)
          return
       end if
       if (.not. self%has_parts) then
@@ -272,7 +272,7 @@ contains
             call assemble_sparse(structure, self%pattern, d, history, unit(:, i), &
                   self%sparse_parts(i)%values)
          end do
-         self%n_assembled = self%n_assembled + 3*count_coupled(structure)
+         self%n_assembled = self%n_assembled + count_parts(structure)
          self%has_parts = .true.
       end if
       associate (parts => self%sparse_parts)
@@ -314,8 +314,10 @@ contains
          if (structure%map%id(structure%map%dof(f), structure%map%node(f)) == equation) exit
       end do
       call new_error(error, status_numerical, 'singular system: '//freedom_name(structure, f) &
-            //' can move without resistance'//new_line('a') &
-            //'  cure: hold it with *BOUNDARY, or connect it with an element that has stiffness')
+            //' can move without resistance, or with one that is lost in the round-off of the ' &
+            //'stiffness around it'//new_line('a') &
+            //'  cure: hold it with *BOUNDARY, or connect it with an element that has stiffness; ' &
+            //'where stiffnesses differ by 1e13, write *EQUATION instead of the stiff element')
    end subroutine name_singular
 
    !> Solves with the matrix last prepared; b is overwritten.

@@ -7,7 +7,7 @@ module gauss_matrices
    use skyline_matrix, only: profile_type, skyline_type, profile_entries
    use complex_skyline, only: complex_skyline_type, new_complex_skyline, column_values
    use structure, only: structure_type
-   use effective_matrix, only: assemble_sum, count_coupled
+   use effective_matrix, only: assemble_sum, count_parts
    use effective_system, only: effective_system_type, name_singular
    implicit none
    private
@@ -64,7 +64,7 @@ contains
       if (.not. whole) self%current = 1 + minloc(self%slots(2:)%last_use, dim=1)
       if (.not. allocated(self%parts)) then
          call assemble_parts(self, structure, profile)
-         matrices%n_assembled = matrices%n_assembled + 3*count_coupled(structure)
+         matrices%n_assembled = matrices%n_assembled + count_parts(structure)
       end if
       started = seconds_now()
       associate (slot => self%slots(self%current))

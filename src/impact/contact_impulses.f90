@@ -3,6 +3,7 @@
 module contact_impulses
    use kinds, only: wp
    use errors, only: error_type, new_error, status_numerical
+   use text, only: to_text
    use complementarity, only: solve_complementarity, solve_equality
    use mesh, only: scheme_implicit, scheme_explicit
    use motion_state, only: state_type
@@ -138,7 +139,7 @@ contains
          call solve_rows(compliance%w, q, scene%rows%friction(compliance%rows), &
                held(compliance%rows), forces, solved, sense(compliance%rows))
          if (.not. solved) then
-            call dependent_impulses(error)
+            call dependent_impulses(scene, motion%motion%t, compliance, error)
             return
          end if
          call split_forces(compliance, forces, motion%lambda, motion%tau)
@@ -205,7 +206,7 @@ contains
       call solve_complementarity(compliance%w, rates(compliance%rows) &
             - matmul(compliance%w, available(compliance%rows)), p, solved)
       if (.not. solved) then
-         call dependent_impulses(error)
+         call dependent_impulses(scene, motion%motion%t, compliance, error)
          return
       end if
       impulse = 0.0_wp
@@ -329,7 +330,7 @@ contains
       call solve_equality(compliance%w, before(compliance%rows) - target_rate(compliance%rows), p, &
             solved)
       if (.not. solved) then
-         call dependent_impulses(error)
+         call dependent_impulses(scene, motion%motion%t, compliance, error)
          return
       end if
       v_before = motion%motion%v
@@ -382,13 +383,27 @@ contains
       call record_impact(scene%ledger, 0.0_wp, dot_product(reaction, motion%motion%v))
    end subroutine book_reactions
 
-   subroutine dependent_impulses(error)
+   !> Impulses that do not exist, or are not the only ones.
+   subroutine dependent_impulses(scene, t, compliance, error)
+      type(scene_type), intent(in) :: scene
+      real(wp), intent(in) :: t
+      type(compliance_type), intent(in) :: compliance   !! of the mass
       type(error_type), allocatable, intent(out) :: error
+      integer, parameter :: most_named = 5
+      character(len=:), allocatable :: nodes
+      integer :: i
 
+      nodes = ''
+      do i = 1, min(compliance%n, most_named)
+         if (i > 1) nodes = nodes//', '
+         nodes = nodes//to_text(scene%rows%node_id(compliance%rows(i)))
+      end do
+      if (compliance%n > most_named) nodes = nodes//', ...'
       call new_error(error, status_numerical, &
-            'an impact has no answer: a contact row has no mass '// &
-            'behind it, or rows depend on each other'//new_line('a')// &
-            '  cure: give every contact node a mass, and let none touch the same wall twice')
+            'an impact at time '//to_text(t)//' has no answer: of the contact rows of node '// &
+            nodes//' one has no mass behind it, or they depend on each other'//new_line('a')// &
+            '  cure: give every contact node a mass, let none touch the same wall twice, '// &
+            'and hold none along the normal')
    end subroutine dependent_impulses
 
 end module contact_impulses

@@ -27,6 +27,7 @@ contains
       type(impact_type) :: impact
       real(wp) :: gap_limit
       integer :: i
+      logical :: known
 
       gap_limit = gap_tolerance*gap_size(scene%rows, motion%motion, dt)
       impact%dt = dt
@@ -34,13 +35,15 @@ contains
       impact%rate_limit = rate_tolerance*rate_size(scene%rows, motion%motion)
       allocate (impact%forced(scene%rows%n), impact%near(scene%rows%n))
       impact%forced = .false.
-      call capture_pressed(scene, motion, gap_limit, impact%rate_limit, error)
+      call capture_pressed(scene, motion, gap_limit, impact%rate_limit, known, error)
       if (allocated(error)) return
       do i = 1, scene%settings%max_events
          impact%new = may_hit(scene%rows) .and. .not. motion%touching .and. &
                row_gaps(scene%rows, motion%motion) <= gap_limit .and. &
                row_rates(scene%rows, motion%motion) < -impact%rate_limit
          if (.not. any(impact%new)) exit
+         if (i == 1 .and. .not. known) call restart_acceleration(scene, motion, error)
+         if (allocated(error)) return
          impact%near = may_hit(scene%rows) .and. .not. (motion%touching .or. impact%new) .and. &
                .not. scene%rows%restitution > 0.0_wp .and. &
                row_gaps(scene%rows, motion%motion) <= gap_limit
@@ -52,10 +55,11 @@ contains
    end subroutine find_first_contacts
 
    !> Rows at rest at the wall: 0 <= lambda, W lambda + G a_free >= 0; those with a force touch.
-   subroutine capture_pressed(scene, motion, gap_limit, rate_limit, error)
+   subroutine capture_pressed(scene, motion, gap_limit, rate_limit, known, error)
       type(scene_type), intent(inout) :: scene
       type(contact_motion_type), intent(inout) :: motion
       real(wp), intent(in) :: gap_limit, rate_limit
+      logical, intent(out) :: known              !! the acceleration had to be found
       type(error_type), allocatable, intent(out) :: error
       type(compliance_type) :: compliance
       real(wp) :: a_rows(scene%rows%n)
@@ -65,8 +69,10 @@ contains
       resting = may_hit(scene%rows) .and. row_gaps(scene%rows, motion%motion) <= gap_limit .and. &
             abs(row_rates(scene%rows, motion%motion)) <= rate_limit
       motion%touching = .false.
+      known = any(resting)
+      if (.not. known) return
       call restart_acceleration(scene, motion, error)
-      if (allocated(error) .or. .not. any(resting)) return
+      if (allocated(error)) return
       call mass_compliance(scene, resting, compliance, error, .true.)
       if (allocated(error)) return
       allocate (lambda(size(compliance%rows)))

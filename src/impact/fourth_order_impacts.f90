@@ -58,9 +58,10 @@ contains
             if (allocated(error)) return
             if (any(release)) call let_go(scene, motion, release, progress, error)
          else
-            if (up_to_impact%dt > 0.0_wp) &
-                  call take(scene, motion, up_to_impact, span, progress, error)
-            if (allocated(error)) return
+            if (up_to_impact%dt > 0.0_wp) then
+               call take(scene, motion, up_to_impact, span, progress, error)
+               if (allocated(error)) return
+            end if
             call jump(scene, motion, span, hits, up_to_impact%dt, progress, error)
          end if
          if (allocated(error)) return

@@ -23,7 +23,9 @@ module fourth_order_span
    !> A contact force below this part of the largest has vanished. A row let go so much too late
    !> leaves with an error in velocity of the square of that.
    real(wp), parameter :: release_tolerance = 1.0e-7_wp
-   integer, parameter :: max_trials = 40
+   !> A bracket below this part of the span is narrow enough whatever the force does in it.
+   real(wp), parameter :: width_limit = 1.0e-12_wp
+   integer, parameter :: max_trials = 60
 
    !> Between its ends the smallest contact force goes from positive to negative.
    type :: bracket_type
@@ -90,10 +92,10 @@ contains
       end do
       scale = maxval(abs(forces))
       limit = force_tolerance*scale
-      if (.not. any(forces(:, 2:) < -limit)) return
+      if (.not. any(forces < -limit)) return
       release = forces(:, 4) < -limit
       if (progress%at_limit) return
-      release = forces(:, 1) <= limit .and. forces(:, 2) < -limit
+      release = forces(:, 1) < -limit .or. (forces(:, 1) <= limit .and. forces(:, 2) < -limit)
       if (any(release)) then
          call release_rows(scene, motion, release, progress)
          call restart_acceleration(scene, motion, error)
@@ -123,15 +125,19 @@ contains
       if (force >= -tolerance) then
          trial = span%dt*merge(0.25_wp, 0.75_wp, minval(forces(:, 2)) < minval(forces(:, 3)))
          call take_part(scene, motion, trial, step, force, error)
-         if (.not. allocated(error) .and. force >= -tolerance) &
-               call take_part(scene, motion, span%dt, step, force, error)
-         if (allocated(error) .or. force >= -tolerance) return
+         if (allocated(error)) return
+         if (force >= -tolerance) then
+            call take_part(scene, motion, span%dt, step, force, error)
+            return
+         end if
       end if
       bracket%x = [0.0_wp, step%dt]
       ! what is looked for is a force half the tolerance below zero
-      bracket%f = [max(0.0_wp, minval(forces(:, 1), mask=motion%touching)), force] + tolerance/2.0_wp
+      bracket%f = [max(0.0_wp, minval(forces(:, 1), mask=motion%touching)), force]
+      bracket%f = bracket%f + tolerance/2.0_wp
       do i = 1, max_trials
          trial = next_trial(bracket, i)
+         if (bracket%x(2) - bracket%x(1) <= width_limit*span%dt) exit
          if (.not. (trial > bracket%x(1) .and. trial < bracket%x(2))) exit
          call take_part(scene, motion, trial, step, force, error)
          if (allocated(error)) return

@@ -12,6 +12,10 @@ module impact_choice
 
    public :: choose_rows
 
+   !> Impacts this close, in parts of the step, are one where the step is of fourth order: one that
+   !> is taken too early is off by twice what is left of its gap.
+   real(wp), parameter :: finest_merge_time = 1.0e-10_wp
+
 contains
 
    !> Which rows take part in the impact: all that close and are at the wall now, or will be within
@@ -25,10 +29,12 @@ contains
       type(progress_type), intent(in) :: progress
       type(impact_type), intent(out) :: impact
       real(wp), dimension(scene%rows%n) :: gaps, rates
+      real(wp) :: near
       integer :: i, row
 
       gaps = row_gaps(scene%rows, motion%motion)
       rates = row_rates(scene%rows, motion%motion)
+      near = progress%dt*merge(finest_merge_time, merge_time_tolerance, scene%settings%fourth_order)
       impact%dt = progress%dt
       impact%beta = progress%beta
       impact%plastic = progress%at_limit
@@ -36,7 +42,7 @@ contains
       impact%new = may_hit(scene%rows) .and. .not. motion%touching .and. &
             rates < -impact%rate_limit .and. &
             (gaps <= span%gap_limit*(merge_gap_tolerance/gap_tolerance) .or. &
-            gaps <= -merge_time_tolerance*progress%dt*rates)
+            gaps <= -near*rates)
       ! an impact elsewhere may push a row at the wall; without a rebound of its own it answers at
       ! once
       impact%near = may_hit(scene%rows) .and. .not. motion%touching .and. .not. impact%new .and. &

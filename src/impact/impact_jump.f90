@@ -93,7 +93,7 @@ contains
          call solve_rows(compliance%w, q, scene%rows%friction(compliance%rows), &
                pressed(compliance%rows), p, solved)
          if (.not. solved) then
-            call dependent_impulses(error)
+            call dependent_impulses(scene, motion%motion%t, compliance, error)
             return
          end if
          call split_forces(compliance, p, impulse, friction)

@@ -37,6 +37,10 @@ module impact_scene
    !> Impacts and releases this close, in parts of the step, happen together.
    real(wp), parameter, public :: merge_time_tolerance = 1.0e-6_wp
 
+   !> The bounces that are left out shift impulses of their size by their length, an error of second
+   !> order; with fourth order this part of the speed makes it a millionth of that.
+   real(wp), parameter :: finer_capture = 1.0e-3_wp
+
    !> Motion with its contact forces.
    type :: contact_motion_type
       type(state_type) :: motion
@@ -282,6 +286,7 @@ contains
 
       limits = dt/2.0_wp*max(0.0_wp, -row_accelerations(scene%rows, a)) &
             *max(1.0e-3_wp, 1.0_wp - scene%rows%restitution)
+      if (scene%settings%fourth_order) limits = finer_capture*limits
       where (scene%rows%capture >= 0.0_wp) limits = scene%rows%capture
    end function capture_speeds
 

@@ -136,7 +136,7 @@ contains
       call solve_marked(scene, compliance, gaps(compliance%rows)*2.0_wp/dt**2, lambda, force, &
             solved)
       if (.not. solved) then
-         call dependent_impulses(error)
+         call dependent_impulses(scene, ahead%t, compliance, error)
          return
       end if
       motion%motion%a = motion%motion%a + force
@@ -247,7 +247,7 @@ contains
       call correct_velocity(join_rates(compliance, rates, slip), &
             join_rates(compliance, whole, tangential))
       if (.not. solved) then
-         call dependent_impulses(error)
+         call dependent_impulses(scene, to%motion%t, compliance, error)
          return
       end if
       whole = merge(whole + impulse, 0.0_wp, marked)

@@ -114,8 +114,8 @@ contains
             common = max(top, self%top(i))
             if (common >= i) cycle
             base_i = self%diagonal_at(i) - i
-            values(base_j + i) = values(base_j + i) - zdotu(i - common, values(base_i + common:), 1, &
-                  values(base_j + common:), 1)
+            values(base_j + i) = values(base_j + i) &
+                  - zdotu(i - common, values(base_i + common:), 1, values(base_j + common:), 1)
          end do
          do i = top, j - 1
             u = values(base_j + i)

@@ -5,7 +5,7 @@
 !> holds the values of the real columns, then of the integer and of the text columns, each in the
 !> order in which the columns were added.
 module column_table
-   use errors, only: error_type, new_error, status_internal
+   use errors, only: error_type, new_error, status_internal, status_numerical
    use hdf5_file, only: hdf5_file_type, series_integer, series_real
    use kinds, only: wp
    use text, only: to_text
@@ -23,6 +23,7 @@ module column_table
    type :: columns_type
       integer :: n = 0
       character(len=256), allocatable :: paths(:)
+      logical, allocatable :: partial(:)         !! of reals: NaN stands where there is no value
    end type columns_type
 
    !> A group of columns that grow together.
@@ -62,17 +63,20 @@ contains
    end subroutine create
 
    !> Adds a column of reals; only before the first row.
-   subroutine add_column(self, file, path, description, error)
+   subroutine add_column(self, file, path, description, error, partial)
       class(column_table_type), intent(inout) :: self
       type(hdf5_file_type), intent(in) :: file
       character(len=*), intent(in) :: path   !! in the group: 'time', 'node_5/U1'
       character(len=*), intent(in) :: description
       type(error_type), allocatable, intent(out) :: error   !! status_file
+      logical, intent(in), optional :: partial   !! NaN stands where there is no value
 
       call check_not_started(self, path, error)
       if (allocated(error)) return
       call file%create_series(self%group//'/'//path, series_real, 0, chunk_rows, description, error)
-      if (.not. allocated(error)) call remember(self%reals, self%group//'/'//path)
+      if (allocated(error)) return
+      call remember(self%reals, self%group//'/'//path)
+      if (present(partial)) self%reals%partial(self%reals%n) = partial
    end subroutine add_column
 
    !> Adds a column of integers; only before the first row.
@@ -127,7 +131,8 @@ contains
       real(wp), intent(in) :: values(:)
       integer, intent(in) :: integers(:)
       character(len=*), intent(in) :: texts(:)
-      type(error_type), allocatable, intent(out) :: error   !! status_file; a row that does not fit
+      !> status_file; a row that does not fit; status_numerical: a value that is not finite
+      type(error_type), allocatable, intent(out) :: error
 
       if (size(values) /= self%reals%n .or. size(integers) /= self%integers%n &
             .or. size(texts) /= self%texts%n) then
@@ -137,6 +142,8 @@ contains
                to_text(self%integers%n)//', '//to_text(self%texts%n))
          return
       end if
+      call check_finite(self, values, error)
+      if (allocated(error)) return
       if (.not. self%started) call start(self)
       self%n_held = self%n_held + 1
       self%n_rows = self%n_rows + 1
@@ -145,6 +152,24 @@ contains
       self%held_texts(self%n_held, :) = texts
       if (self%n_held == size(self%held_reals, 1)) call self%flush(file, error)
    end subroutine append_mixed
+
+   !> No result is infinite, nor NaN but where there is no value. The first column is the time.
+   subroutine check_finite(self, values, error)
+      class(column_table_type), intent(in) :: self
+      real(wp), intent(in) :: values(:)
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      if (all(abs(values) <= huge(1.0_wp))) return
+      do i = 1, size(values)
+         if (abs(values(i)) <= huge(1.0_wp)) cycle
+         if (self%reals%partial(i) .and. .not. abs(values(i)) > huge(1.0_wp)) cycle
+         call new_error(error, status_numerical, trim(self%reals%paths(i))//' is not finite (NaN ' &
+               //'or infinite) at time '//to_text(values(1))//new_line('a') &
+               //'  cure: a smaller step; or other units, so that no number overflows')
+         return
+      end do
+   end subroutine check_finite
 
    !> Writes the rows held in memory, column by column.
    subroutine flush_rows(self, file, error)
@@ -197,14 +222,16 @@ contains
       character(len=*), intent(in) :: path   !! in the file
       character(len=256), allocatable :: longer(:)
 
-      if (.not. allocated(columns%paths)) allocate (columns%paths(8))
+      if (.not. allocated(columns%paths)) allocate (columns%paths(8), columns%partial(8))
       if (columns%n == size(columns%paths)) then
          allocate (longer(2*columns%n))
          longer(:columns%n) = columns%paths
          call move_alloc(longer, columns%paths)
+         columns%partial = [columns%partial, columns%partial]
       end if
       columns%n = columns%n + 1
       columns%paths(columns%n) = path
+      columns%partial(columns%n) = .false.
    end subroutine remember
 
 end module column_table

@@ -118,7 +118,7 @@ contains
 
       i = findloc(nodal, q, dim=1)
       call self%grid%add_point_field(file, trim(names(i)), n_components(i), trim(meanings(i)), &
-            self%field(q), error)
+            self%field(q), error, partial=q == quantity_cdis)
    end subroutine add_field
 
    !> Appends a frame.

@@ -208,7 +208,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(column_type), allocatable :: longer(:)
 
-      call self%table%add_column(file, path, description, error)
+      call self%table%add_column(file, path, description, error, &
+            partial=column%quantity == quantity_cdis)
       if (allocated(error)) return
       if (self%n == size(self%columns)) then
          allocate (longer(2*self%n))

@@ -130,6 +130,9 @@ contains
       if (allocated(error)) return
       call self%file%set_attribute('/model', 'alpha', scene%system%newmark%alpha, error)
       if (allocated(error)) return
+      call self%file%set_attribute('/model', 'order', merge(4, 2, scene%settings%fourth_order), &
+            error)
+      if (allocated(error)) return
       call self%file%write_dataset('/model/profile', heights, &
             'column heights of the effective stiffness, diagonal included', error)
       if (allocated(error)) return

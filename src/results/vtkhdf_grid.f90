@@ -6,9 +6,10 @@
 !> left, and must be called before the file is closed. The data are written first and the number
 !> of frames last: whatever happens in between, a reader finds the frames before.
 module vtkhdf_grid
-   use errors, only: error_type, new_error, status_internal
+   use errors, only: error_type, new_error, status_internal, status_numerical
    use hdf5_file, only: hdf5_file_type, series_integer, series_real
    use kinds, only: int64, wp
+   use text, only: to_text
    implicit none
    private
 
@@ -24,6 +25,7 @@ module vtkhdf_grid
    type :: field_type
       character(len=:), allocatable :: data_path, offset_path
       integer :: n = 0                      ! points or cells
+      logical :: partial = .false.          ! NaN stands where there is no value
       real(wp), allocatable :: held(:, :)   ! (component, point or cell, frame after frame)
    end type field_type
 
@@ -126,15 +128,17 @@ contains
    end subroutine create_step_list
 
    !> Adds a quantity at the points; only before the first frame.
-   subroutine add_point_field(self, file, name, n_components, description, field, error)
+   subroutine add_point_field(self, file, name, n_components, description, field, error, partial)
       class(vtkhdf_grid_type), intent(inout) :: self
       type(hdf5_file_type), intent(in) :: file
       character(len=*), intent(in) :: name, description
       integer, intent(in) :: n_components   !! 1 scalar, 3 vector, 6 symmetric tensor
       integer, intent(out) :: field         !! its number, for `set_values`
       type(error_type), allocatable, intent(out) :: error   !! status_file
+      logical, intent(in), optional :: partial   !! NaN stands where there is no value
 
       call add_field(self, 'Point', name, n_components, self%n_points, field)
+      if (present(partial)) self%fields(field)%partial = partial
       call create_field(self, file, self%fields(field), description, error)
    end subroutine add_point_field
 
@@ -196,6 +200,38 @@ contains
             'where each frame begins in '//field%data_path, error)
    end subroutine create_field
 
+   !> No result is infinite, nor NaN but where there is no value.
+   subroutine check_finite(self, time, error)
+      type(vtkhdf_grid_type), intent(in) :: self
+      real(wp), intent(in) :: time
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      do i = 1, size(self%fields)
+         associate (field => self%fields(i))
+            if (is_sound(field%held(:, self%n_held*field%n + 1:(self%n_held + 1)*field%n), &
+                  field%partial)) cycle
+            call new_error(error, status_numerical, field%data_path//' is not finite (NaN or ' &
+                  //'infinite) at time '//to_text(time)//new_line('a') &
+                  //'  cure: a smaller step; or other units, so that no number overflows')
+            return
+         end associate
+      end do
+   end subroutine check_finite
+
+   !> Whether all values are finite, or NaN where that is allowed.
+   pure function is_sound(values, partial) result(sound)
+      real(wp), intent(in) :: values(:, :)
+      logical, intent(in) :: partial
+      logical :: sound
+
+      if (partial) then
+         sound = .not. any(abs(values) > huge(1.0_wp))
+      else
+         sound = all(abs(values) <= huge(1.0_wp))
+      end if
+   end function is_sound
+
    !> Hands over a scalar field for the next frame; it stays until it is set again.
    pure subroutine set_scalars(self, field, values)
       class(vtkhdf_grid_type), intent(inout) :: self
@@ -223,9 +259,12 @@ contains
       class(vtkhdf_grid_type), intent(inout) :: self
       type(hdf5_file_type), intent(in) :: file
       real(wp), intent(in) :: time   !! or whatever orders the frames, e.g. a frequency
-      type(error_type), allocatable, intent(out) :: error   !! status_file
+      !> status_file; status_numerical: a value that is not finite
+      type(error_type), allocatable, intent(out) :: error
       integer :: i, n
 
+      call check_finite(self, time, error)
+      if (allocated(error)) return
       self%n_held = self%n_held + 1
       self%times(self%n_held) = time
       if (self%n_held == size(self%times)) then

@@ -10,7 +10,8 @@ module increment_checks
    implicit none
    private
 
-   public :: check_finite, check_balance, needs_energies
+   public :: check_finite, check_energies, check_interpolation, check_balance
+   public :: needs_energies
 
 contains
 
@@ -33,6 +34,35 @@ contains
             //new_line('a') &
             //'  cure: a smaller step, and a look at the loads and the energy before it')
    end subroutine check_finite
+
+   !> Energies are squares: they overflow while the motion is still finite.
+   subroutine check_energies(ledger, t, error)
+      type(ledger_type), intent(in) :: ledger    !! of the last increment closed
+      real(wp), intent(in) :: t
+      type(error_type), allocatable, intent(out) :: error
+
+      if (abs(ledger%total) <= huge(1.0_wp) .and. abs(ledger%balance_error) <= huge(1.0_wp)) return
+      call new_error(error, status_numerical, 'the energies are not finite at time '//to_text(t) &
+            //': kinetic '//to_text(ledger%kinetic)//', strain '//to_text(ledger%strain) &
+            //', external work '//to_text(ledger%external_work)//new_line('a') &
+            //'  cure: other units, so that the squares of displacements and velocities do not ' &
+            //'overflow; or a smaller step, if energy grew from step to step')
+   end subroutine check_energies
+
+   !> EVENTS=ANCHOR interpolates between the ends of steps, which makes energy of nothing where a
+   !> step is many periods long. Half of all there is must not come from there.
+   subroutine check_interpolation(ledger, t, error)
+      type(ledger_type), intent(in) :: ledger
+      real(wp), intent(in) :: t
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), parameter :: most_made = 0.5_wp
+
+      if (ledger%balance_error <= most_made*ledger%scale) return
+      call new_error(error, status_numerical, 'EVENTS=ANCHOR has made the energy ' &
+            //to_text(ledger%balance_error)//' of '//to_text(ledger%scale)//' by interpolation ' &
+            //'until time '//to_text(t)//': the step is too long for it'//new_line('a') &
+            //'  cure: a smaller step, or EVENTS=SUBSTEP')
+   end subroutine check_interpolation
 
    !> Whether energies are recorded or limited at the end of an increment.
    pure function needs_energies(requests, increment) result(needed)

@@ -16,6 +16,7 @@ module memory_estimate
    private
 
    public :: memory_type, item_length, estimate_memory, add_step_memory, memory_text
+   public :: item_matrices, item_frames, item_rows, item_contact
 
    integer, parameter :: item_length = 24
    integer, parameter :: n_items = 6
@@ -33,6 +34,8 @@ module memory_estimate
    type :: memory_type
       real(wp) :: items(n_items) = 0.0_wp
       real(wp) :: start_up = 0.0_wp
+   contains
+      procedure :: total
    end type memory_type
 
 contains
@@ -49,10 +52,27 @@ contains
          n_history = real(structure%n_history, wp)
       end associate
       ! d, v, a, the forces beside them, of two states and the work between them
-      self%items(item_state) = real_bytes*(10.0_wp*n_freedoms + 3.0_wp*n_history)
+      self%items(item_state) = real_bytes*((10.0_wp + n_beside(simulation))*n_freedoms &
+            + 3.0_wp*n_history)
       self%items(item_contact) = real_bytes*contact_entries(simulation)
       call add_output(self, simulation)
    end subroutine estimate_memory
+
+   !> Arrays of the states with contact that stand beside the first: where an impact is sought they
+   !> are those at both ends of a part of the step, at the impact and on trial.
+   pure function n_beside(simulation) result(n)
+      type(simulation_type), intent(in) :: simulation
+      real(wp) :: n
+      real(wp), parameter :: n_arrays = 7.0_wp
+
+      associate (scene => simulation%scene)
+         n = 0.0_wp
+         if (scene%rows%n == 0) return
+         n = n_arrays
+         if (scene%settings%method /= method_transformation .or. scene%settings%anchored) return
+         n = 5.0_wp*n_arrays
+      end associate
+   end function n_beside
 
    !> Motions by unit forces in contact rows: work space, and those kept for rows that stay.
    pure function contact_entries(simulation) result(entries)
@@ -110,6 +130,13 @@ contains
 
       associate (system => simulation%scene%system)
          n = real(n_matrices(simulation, step), wp)
+         if (step%order == 4) then
+            ! complex factors of so many step lengths, M, C and K, and the factors of M
+            n = merge(2.0_wp, 8.0_wp, simulation%scene%rows%n == 0) + 4.0_wp
+            self%items(item_matrices) = max(self%items(item_matrices), real_bytes*n &
+                  *real(profile_entries(system%profile), wp))
+            return
+         end if
          if (system%matrices%choice%taken == solver_mumps) then
             entries = sparse_entries(system%profile%n)
          else
@@ -157,13 +184,20 @@ contains
             simulation%scene%settings%method == method_transformation) n = 4
    end function n_matrices
 
+   !> The most that is held at once.
+   pure real(wp) function total(self)
+      class(memory_type), intent(in) :: self
+
+      total = max(self%start_up, sum(self%items))
+   end function total
+
    !> "memory: 120 MB (model 80, matrices 30, ...)".
    pure function memory_text(self) result(line)
       type(memory_type), intent(in) :: self
       character(len=:), allocatable :: line
       integer :: i
 
-      line = 'memory: '//megabytes(max(self%start_up, sum(self%items)))//' MB ('
+      line = 'memory: '//megabytes(self%total())//' MB ('
       do i = 1, n_items
          if (i > 1) line = line//', '
          line = line//trim(names(i))//' '//megabytes(self%items(i))

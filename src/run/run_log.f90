@@ -38,8 +38,8 @@ contains
       if (allocated(error)) return
       write (self%status_unit, '(a)') '# step  increment    step time      total time     '// &
             'increment      iterations  events'
-      write (self%status_unit, '(a)') '# a line an increment; beyond 10000 of a step one in '// &
-            '10, beyond 100000 one in 100, ..., with all iterations and events since the line before'
+      write (self%status_unit, '(a)') '# a line an increment; beyond 10000 of a step one '// &
+            'in 10, beyond 100000 one in 100, ..., with all iterations and events since the last'
    end subroutine open_log
 
    subroutine open_text(path, unit, error)

@@ -18,6 +18,7 @@ module run_report
    use increment_count, only: count_increments
    use scene_setup, only: simulation_type
    use run_log, only: log_type, say
+   use feature_report, only: percent
    use command_line, only: version_text
    implicit none
    private
@@ -69,9 +70,12 @@ contains
          if (len_trim(step%name) > 0) line = line//' '//trim(step%name)
          if (step%procedure == procedure_frequency) then
             call say(log, line//', '//plural(step%n_modes, 'mode'))
-         else
+         else if (step%direct) then
             call say(log, line//', '//plural(count_increments(step), 'increment')//' of ' &
                   //to_text(step%dt)//' over '//to_text(step%duration))
+         else
+            call say(log, line//', automatic increments from '//to_text(step%dt)//' on over ' &
+                  //to_text(step%duration))
          end if
          entries = profile_entries(system%profile)
          call say(log, '  '//plural(system%structure%map%n_eq, 'equation')//', profile ' &
@@ -297,17 +301,6 @@ contains
          call say(log, 'cost: '//line)
       end associate
    end subroutine report_cost
-
-   !> "12 %".
-   pure function percent(part, whole) result(text)
-      real(wp), intent(in) :: part, whole
-      character(len=:), allocatable :: text
-      real(wp) :: share
-
-      share = 0.0_wp
-      if (whole > 0.0_wp) share = 100.0_wp*part/whole
-      text = to_text(nint(share))//' %'
-   end function percent
 
    !> What contact has cost, and how often the fictitious force had to be found otherwise.
    subroutine report_contact(simulation, log)

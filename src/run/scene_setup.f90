@@ -22,7 +22,7 @@ module scene_setup
    use initial_contact, only: adjustment_type, build_rows, adjust_pairs, adjustment_remark, &
          check_overlaps, check_jump
    use impact_method, only: impact_method_type
-   use increment_count, only: count_increments
+   use increment_count, only: count_increments, check_remainder
    use massless_contacts, only: mark_massless_rows
    use automatic_groups, only: partition_type, resolve_automatic
    use impact_factory, only: make_impact_method, check_method, check_anchor
@@ -49,6 +49,7 @@ module scene_setup
       real(wp) :: critical_gamma = -1.0_wp       !! for which `critical` holds, -1 for none
       integer(int64) :: n_events(5) = 0          !! by event_ kinds, over the whole run
       integer :: most_touching = 0               !! rows in contact at once
+      logical, allocatable :: has_met(:)         !! by contact pairs
    end type simulation_type
 
 contains
@@ -73,6 +74,7 @@ contains
       if (allocated(error)) return
       self%scene%impulse = [(0.0_wp, i=1, self%scene%rows%n)]
       self%scene%curvature = self%scene%impulse
+      allocate (self%has_met(size(self%contact%names)), source=.false.)
       call check_freedoms_named(self, error)
       if (allocated(error)) return
       call initial_motion(self, error)
@@ -248,6 +250,8 @@ contains
          call mark_massless_rows(self%model, self%contact, system, self%scene%rows, error)
          if (allocated(error)) return
          call check_method(self%model, self%scene%settings, step, system%newmark%beta, error)
+         if (allocated(error)) return
+         call check_remainder(self%model, self%scene%settings, step, error)
          if (allocated(error)) return
          call check_order(self%model, self%scene, step, error)
          if (allocated(error)) return

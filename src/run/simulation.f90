@@ -16,20 +16,23 @@ module simulation
    use command_line, only: command_type, version_text
    use run_log, only: log_type, open_log, close_log, say, note, write_status, has_line
    use progress, only: progress_type, start_progress, show_progress, end_progress
-   use scene_setup, only: simulation_type, build_scene, begin_step, initial_motion
+   use scene_setup, only: simulation_type, initial_motion
    use increment_count, only: count_increments, last_increment
    use step_start, only: start_step
    use increments, only: control_type, start_control, take_increment, take_automatic_increment
-   use increment_checks, only: check_finite, check_balance, needs_energies
+   use increment_checks, only: check_finite, check_energies, check_interpolation, &
+         check_balance, needs_energies
    use twin_motion, only: twins_type, start_twins, take_fine_increment, compare_twins, step_is_over
    use rehearsal, only: plan_type, rehearse, report_tolerance
    use frequency_run, only: run_frequency_step
-   use memory_estimate, only: memory_type, estimate_memory, add_step_memory, memory_text
+   use scene_advice, only: advice_list_type, advise_end
+   use feature_report, only: report_advice
+   use deck_check, only: preview_type, prepare, report_preview
    use run_report, only: report_model, report_step, report_notes, report_summary
    implicit none
    private
 
-   public :: run_deck, check_deck
+   public :: run_deck
 
    !> Results are brought to the disk at least this often, seconds.
    real(wp), parameter :: flush_interval = 5.0_wp
@@ -41,6 +44,7 @@ module simulation
       type(result_file_type) :: results
       type(log_type) :: log
       type(progress_type) :: progress
+      type(preview_type) :: preview
       real(wp) :: last_flush = 0.0_wp
       real(wp) :: end_time = 0.0_wp              !! total time at the end of the run
       integer(int64) :: iterations = 0           !! at the end of the last increment
@@ -48,53 +52,13 @@ module simulation
 
 contains
 
-   !> Reads the deck, builds every step once without running, and says what a run would do.
-   subroutine check_deck(command, error)
-      type(command_type), intent(in) :: command
-      type(error_type), allocatable, intent(out) :: error
-      type(simulation_type) :: simulation
-      type(log_type) :: log
-
-      call read_deck(simulation%model, command%deck, command%definitions, error)
-      if (allocated(error)) return
-      call prepare(simulation, log, .true., error)
-      if (.not. allocated(error)) call say(log, 'the deck is sound')
-   end subroutine check_deck
-
-   !> Builds the scene and goes through all steps without time passing, for their errors.
-   subroutine prepare(simulation, log, aloud, error)
-      type(simulation_type), intent(inout) :: simulation
-      type(log_type), intent(in) :: log
-      logical, intent(in) :: aloud
-      type(error_type), allocatable, intent(out) :: error
-      type(memory_type) :: memory
-      integer :: i
-
-      call build_scene(simulation, error)
-      if (allocated(error)) return
-      if (aloud) call report_model(simulation, log)
-      do i = 1, size(simulation%model%steps)
-         call begin_step(simulation, i, error)
-         if (allocated(error)) return
-         if (aloud) then
-            call report_step(simulation, i, log)
-            call add_step_memory(memory, simulation, simulation%model%steps(i))
-         end if
-         simulation%motion%motion%t = simulation%motion%motion%t &
-               + simulation%model%steps(i)%duration
-      end do
-      if (.not. aloud) return
-      call estimate_memory(memory, simulation)
-      call say(log, memory_text(memory))
-      call report_notes(simulation, log)
-   end subroutine prepare
-
    !> A whole run. Files are made only after the deck has been found sound.
    subroutine run_deck(command, error)
       type(command_type), intent(in) :: command
       type(error_type), allocatable, intent(out) :: error
       type(simulation_type) :: simulation
       type(output_type) :: output
+      type(advice_list_type) :: lessons
       type(error_type), allocatable :: close_error
       integer :: outer
 
@@ -106,7 +70,7 @@ contains
          call leave(cost, outer)
          if (allocated(error)) return
          call enter(cost, phase_build, outer)
-         call prepare(simulation, output%log, .false., error)
+         call prepare(simulation, output%log, .false., output%preview, error)
          if (allocated(error)) return
          output%end_time = simulation%motion%motion%t
          call rebuild(simulation, error)
@@ -120,6 +84,8 @@ contains
       call close_results(output%results, simulation%scene, close_error)
       if (.not. allocated(error) .and. allocated(close_error)) call move_alloc(close_error, error)
       call report_summary(simulation, output%log)
+      if (.not. allocated(error)) call advise_end(lessons, simulation)
+      call report_advice(lessons, output%log)
       call report_end(output%log, error)
       call close_log(output%log)
    end subroutine run_deck
@@ -168,6 +134,7 @@ contains
       integer :: i, outer
 
       call report_model(simulation, output%log)
+      call report_preview(output%preview, simulation, .false., output%log)
       call report_notes(simulation, output%log)
       call enter(simulation%scene%system%cost, phase_output, outer, .true.)
       call open_results(output%results, command%output, simulation%model, simulation%scene, &
@@ -221,6 +188,10 @@ contains
       call mark_implicit(simulation%scene%system%structure, implicit_equation)
       call write_system(output%results, simulation%scene, version_text, implicit_equation, error)
       call leave(simulation%scene%system%cost, outer)
+      if (allocated(error)) return
+      call check_finite(simulation%motion%motion, simulation%scene%ledger, 0.0_wp, error)
+      if (allocated(error)) return
+      call check_energies(simulation%scene%ledger, simulation%motion%motion%t, error)
       if (allocated(error)) return
       call record_increment(output%results, simulation%scene, simulation%contact, &
             simulation%motion, simulation%model%steps(1)%requests, 0, .false., error)
@@ -348,6 +319,8 @@ contains
          last = times(1) >= step%duration
          if (last .or. needs_energies(step%requests, counts(2))) call close_increment( &
                scene%ledger, scene%system, motion%motion)
+         call check_energies(scene%ledger, motion%motion%t, error)
+         if (allocated(error)) return
          n_events = scene%n_events
          call count_events(simulation)
          call record_increment(output%results, scene, simulation%contact, motion, step%requests, &
@@ -363,6 +336,10 @@ contains
          call flush_now_and_then(output, scene%system%cost, error)
          if (allocated(error)) return
          call next_increment(scene%system%cost)
+         if (scene%settings%anchored) then
+            call check_interpolation(scene%ledger, motion%motion%t, error)
+            if (allocated(error)) return
+         end if
          call check_balance(scene%ledger, step, motion%motion%t, error)
       end associate
    end subroutine finish_increment
@@ -370,15 +347,22 @@ contains
    !> Adds the events of the increment at hand to the count of the run; sees how many rows touch.
    pure subroutine count_events(self)
       type(simulation_type), intent(inout) :: self
-      integer :: i
+      integer :: i, n_touching
 
       do i = 1, self%scene%n_events
-         associate (kind => self%scene%events(i)%kind)
+         associate (kind => self%scene%events(i)%kind, row => self%scene%events(i)%row)
             self%n_events(kind) = self%n_events(kind) + 1
+            self%has_met(self%scene%rows%pair(row)) = .true.
          end associate
       end do
-      self%most_touching = max(self%most_touching, &
-            count(self%motion%touching .or. self%motion%lambda > 0.0_wp))
+      n_touching = count(self%motion%touching .or. self%motion%lambda > 0.0_wp)
+      self%most_touching = max(self%most_touching, n_touching)
+      if (n_touching == 0 .or. all(self%has_met)) return
+      do i = 1, self%scene%rows%n
+         if (self%motion%touching(i) .or. self%motion%lambda(i) > 0.0_wp) then
+            self%has_met(self%scene%rows%pair(i)) = .true.
+         end if
+      end do
    end subroutine count_events
 
    !> How Newton's method went in an increment (its last solution, where it has several).

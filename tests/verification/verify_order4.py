@@ -272,6 +272,101 @@ def check_driven(checks):
         checks.at_most(gap, 1e-4, f'{name}: distance from ORDER=2 at step 0.0025')
 
 
+# --- what else a deck may have ----------------------------------------------------------------
+
+TIED = '''*PARAMETER
+dt = 0.04
+*NODE
+1, 0, 0
+2, 1, 0
+3, 2, 0
+4, 3, 0
+5, 5, 0
+6, 6, 0
+*ELEMENT, TYPE=T2D2, ELSET=bar
+1, 1, 2
+2, 2, 3
+3, 3, 4
+4, 5, 6
+*ELEMENT, TYPE=MASS, ELSET=extra
+5, 4
+*MASS, ELSET=extra
+0.4
+*MATERIAL, NAME=m
+*ELASTIC
+6
+*DENSITY
+0.7
+*DAMPING, ALPHA=0.05, BETA=0.02
+*SOLID SECTION, ELSET=bar, MATERIAL=m
+1
+*EQUATION
+2
+5, 1, 1, 4, 1, -2
+*BOUNDARY
+1, 1, 2
+2, 2
+3, 2
+4, 2
+5, 2
+6, 2
+*SURFACE, NAME=body, TYPE=NODE
+6
+*RIGID SURFACE, NAME=wall, TYPE=PLANE
+6.3, 0, 0
+-1, 0, 0
+*SURFACE INTERACTION, NAME=hit
+*IMPACT, RESTITUTION=0.5
+*CONTACT PAIR, INTERACTION=hit
+body, wall
+*AMPLITUDE, NAME=rise
+0, 0, 0.33, 1, 1.37, -1, 2, 0.5
+*STEP
+*STATIC
+1, 1
+*CLOAD
+4, 1, -1.2
+*NODE PRINT
+U, RF
+*ENERGY PRINT
+*END STEP
+*STEP
+*DYNAMIC, DIRECT, ORDER=4
+<dt>, 2
+*CLOAD, OP=NEW
+3, 1, 0.2
+*CONTACT PRINT
+CF, CDIS
+*END STEP
+*STEP
+*DYNAMIC, DIRECT, ORDER=4
+<dt>, 2
+*CLOAD, OP=NEW, AMPLITUDE=rise
+4, 1, 1.5
+*BOUNDARY, AMPLITUDE=rise
+1, 1, 1, 0.3
+*END STEP
+'''
+
+
+def check_tied(checks):
+    """Consistent mass, Rayleigh damping, a linear constraint, a static step before two dynamic ones,
+    bounces that die out at a wall (e = 0.5), a support that moves."""
+    steps = (0.08, 0.04, 0.02)
+    names = [f'history/node_{i}/{of}' for i, of in ((1, 'U1'), (4, 'U1'), (6, 'U1'), (1, 'RF1'))]
+    fine = run_deck(TIED, dt=0.00125)
+    errors = []
+    for h in steps:
+        run = run_deck(TIED, dt=h)
+        same = np.searchsorted(fine['history/time'], run['history/time'] - 1e-9)
+        errors.append([largest(run[name] - fine[name][same]) for name in names])
+        checks.at_most(balance(run), 1e-13, f'tied bars, h = {h}: energy balance')
+    checks.at_least(np.sum(fine['events/kind'] == b'capture'), 1, 'tied bars: captures')
+    for name, column in zip(names[1:], np.array(errors).T[1:]):
+        checks.at_least(order(steps, column), 3.5,
+                        f'tied bars, {name}: order of the error, {column[0]:.3g} to {column[-1]:.3g}')
+
+
 # --- many freedoms ----------------------------------------------------------------------------
 
 def check_bar(checks):
@@ -407,7 +502,7 @@ def check_cost(checks):
 
 
 CHECKS = Checks()
-for check in (check_oscillator, check_damped, check_two_dof, check_caught, check_driven, check_bar,
-              check_graze, check_instants, check_ball, check_cost):
+for check in (check_oscillator, check_damped, check_two_dof, check_caught, check_driven, check_tied,
+              check_bar, check_graze, check_instants, check_ball, check_cost):
     check(CHECKS)
 CHECKS.finish()

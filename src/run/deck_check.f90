@@ -1,0 +1,120 @@
+!> What a deck would do, found by building every step of it without time passing.
+module deck_check
+   use kinds, only: wp
+   use errors, only: error_type
+   use text, only: to_text
+   use deck_reader, only: read_deck
+   use command_line, only: command_type
+   use scene_setup, only: simulation_type, build_scene, begin_step
+   use memory_estimate, only: memory_type, estimate_memory, add_step_memory, memory_text
+   use scene_features, only: feature_list_type, list_features, share_memory
+   use scene_advice, only: advice_list_type, advise_step, advise_pairs
+   use feature_report, only: report_features, report_advice
+   use run_report, only: report_model, report_step, report_notes
+   use run_log, only: log_type, say
+   implicit none
+   private
+
+   public :: preview_type, check_deck, prepare, report_preview
+
+   !> Elements up to which a run looks at each for advice; a check always does.
+   integer, parameter :: most_elements = 5000
+
+   !> What is known of a run before it begins.
+   type :: preview_type
+      type(memory_type) :: memory
+      type(feature_list_type) :: features        !! of the dearest step
+      type(advice_list_type) :: advice
+      logical, allocatable :: may_meet(:)        !! by contact pairs
+   end type preview_type
+
+contains
+
+   !> Reads the deck, builds every step once without running, and says what a run would do.
+   subroutine check_deck(command, error)
+      type(command_type), intent(in) :: command
+      type(error_type), allocatable, intent(out) :: error
+      type(simulation_type) :: simulation
+      type(preview_type) :: preview
+      type(log_type) :: log
+
+      call read_deck(simulation%model, command%deck, command%definitions, error)
+      if (allocated(error)) return
+      call prepare(simulation, log, .true., preview, error)
+      if (allocated(error)) return
+      call say(log, memory_text(preview%memory))
+      call report_preview(preview, simulation, .true., log)
+      call report_notes(simulation, log)
+      call say(log, 'the deck is sound')
+   end subroutine check_deck
+
+   !> Builds the scene and goes through all steps without time passing, for their errors.
+   subroutine prepare(simulation, log, aloud, preview, error)
+      type(simulation_type), intent(inout) :: simulation
+      type(log_type), intent(in) :: log
+      logical, intent(in) :: aloud
+      type(preview_type), intent(out) :: preview
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      call build_scene(simulation, error)
+      if (allocated(error)) return
+      allocate (preview%may_meet(size(simulation%contact%names)), source=.false.)
+      if (aloud) call report_model(simulation, log)
+      do i = 1, size(simulation%model%steps)
+         call begin_step(simulation, i, error)
+         if (allocated(error)) return
+         if (aloud) call report_step(simulation, i, log)
+         call look_ahead(simulation, i, aloud, preview)
+         simulation%motion%motion%t = simulation%motion%motion%t &
+               + simulation%model%steps(i)%duration
+      end do
+      call estimate_memory(preview%memory, simulation)
+      call share_memory(preview%features, preview%memory)
+      call name_idle_pairs(simulation, preview)
+   end subroutine prepare
+
+   !> Memory, features and advice of a step in force.
+   subroutine look_ahead(simulation, i_step, thorough, preview)
+      type(simulation_type), intent(in) :: simulation
+      integer, intent(in) :: i_step
+      logical, intent(in) :: thorough
+      type(preview_type), intent(inout) :: preview
+      type(feature_list_type) :: features
+
+      call add_step_memory(preview%memory, simulation, simulation%model%steps(i_step))
+      call list_features(features, simulation, i_step)
+      call advise_step(preview%advice, simulation, i_step, features, thorough .or. &
+            simulation%model%elements%n <= most_elements)
+      call advise_pairs(simulation, preview%may_meet)
+      if (i_step > 1 .and. features%total() <= preview%features%total()) return
+      preview%features = features
+   end subroutine look_ahead
+
+   !> Pairs that cannot meet in any step.
+   subroutine name_idle_pairs(simulation, preview)
+      type(simulation_type), intent(in) :: simulation
+      type(preview_type), intent(inout) :: preview
+      integer :: p
+
+      do p = 1, size(preview%may_meet)
+         if (preview%may_meet(p) .or. .not. any(simulation%contact%rows%pair == p)) cycle
+         call preview%advice%add('contact '//trim(simulation%contact%names(p)) &
+               //' can never meet: all its nodes are held along their normals, and its walls ' &
+               //'are at rest; leave the pair out')
+      end do
+   end subroutine name_idle_pairs
+
+   !> Features and advice; the features of small models in few words unless all is wanted.
+   subroutine report_preview(preview, simulation, whole, log)
+      type(preview_type), intent(in) :: preview
+      type(simulation_type), intent(in) :: simulation
+      logical, intent(in) :: whole
+      type(log_type), intent(in) :: log
+
+      call report_features(preview%features, simulation%scene%system%structure%map%n_freedoms, &
+            whole, log)
+      call report_advice(preview%advice, log)
+   end subroutine report_preview
+
+end module deck_check
