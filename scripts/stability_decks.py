@@ -140,10 +140,11 @@ def coupled_pairs(implicit, explicit, mass, start, steps, beta=0.25, inner_expli
 
 
 def wall_cards(members, beta, place=0.0):
-    """A rigid plane that faces along x, and nodes that rebound from it with e = 1."""
+    """A rigid plane that faces along x, and nodes that rebound from it with e = 1, however
+    often in a step: capture at MAX EVENTS would change the energy by itself."""
     return ["*SURFACE, NAME=BODY, TYPE=NODE", *members,
             "*RIGID SURFACE, NAME=WALL, TYPE=PLANE", f"{number(place)}, 0, 0", "1, 0, 0",
-            "*SURFACE INTERACTION, NAME=HIT", f"*IMPACT, RESTITUTION=1, BETA={beta}",
+            "*SURFACE INTERACTION, NAME=HIT", f"*IMPACT, RESTITUTION=1, BETA={beta}, MAX EVENTS=10000",
             "*CONTACT PAIR, INTERACTION=HIT", "BODY, WALL"]
 
 

@@ -40,16 +40,22 @@ def amplification(carom, scheme, omega, table=False):
     omega = np.asarray(omega)
     n, steps = len(omega), 2 if scheme.alpha or scheme.explicit else 1
     phase = np.random.default_rng(7).uniform(0.0, 2.0 * np.pi, n)
+    # with gamma over 1/2 stiff motion overshoots: speeds of omega d times omega h come out
+    speed = np.maximum(omega, 1.0) if scheme.gamma > 0.5 else np.ones(n)
     runs = []
     for turn in (0.0, 0.5 * np.pi):
-        text = oscillators(scheme, omega, np.cos(phase + turn) / omega, np.sin(phase + turn), steps,
-                           table)
-        runs.append(run_frames(carom, text, n, omega))
+        text = oscillators(scheme, omega, np.cos(phase + turn) / omega, speed * np.sin(phase + turn),
+                           steps, table)
+        states = run_frames(carom, text, n, omega)
+        states[:, :, 1] /= speed[:, None]
+        runs.append(states)
     radii, matrices = np.empty(n), np.empty((n, 3, 3))
     for i in range(n):
         before = np.concatenate([states[i, :-1] for states in runs]).T
         after = np.concatenate([states[i, 1:] for states in runs]).T
         radii[i], matrices[i] = fitted_radius(before, after)
+        scale = np.array([1.0, speed[i], 1.0])
+        matrices[i] *= scale[:, None] / scale
     return radii, matrices
 
 

@@ -81,16 +81,19 @@ def draw_impact_steps(omega, deltas, found, recurring, path):
 def draw_recurring(omega, bouncing, courant, bars, path):
     """Energy growth where impacts recur by themselves: an oscillator, a bar."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(14, 5.8), layout="constrained")
-    for (name, rows), (colour, mark, line) in zip(bouncing.items(), STYLES):
-        left.plot(omega, np.maximum(rows[:, 1], 1e-16), line, marker=mark, color=colour, label=name)
-    left.axvline(0.5, color="0.5", linewidth=1)
-    left.text(0.52, 3e-15, "0.5", color="0.4")
-    left.set(xscale="log", yscale="log", ylim=(1e-16, 10), xlabel=FREQUENCY,
+    for (name, rows), (colour, mark, _) in zip(bouncing.items(), STYLES):
+        shown = np.where(rows[:, 0] - 1.0 > 1e-9, rows[:, 1], np.nan)
+        left.plot(omega, shown, mark, color=colour, markersize=7, label=name)
+        kept = rows[:, 0] - 1.0 <= 1e-9
+        left.plot(omega[kept], np.full(kept.sum(), 1e-9), mark, color=colour, fillstyle="none",
+                  markersize=7)
+    left.text(0.02, 0.04, "open marks: no gain", transform=left.transAxes, fontsize=11)
+    left.set(xscale="log", yscale="log", ylim=(1e-10, 10), xlabel=FREQUENCY,
              ylabel="ln(largest energy / first) / impacts", title="One oscillator bounces, e = 1")
     for (name, rows), (colour, mark, line) in zip(bars.items(), STYLES):
-        right.plot(courant, np.clip(rows[:, 0] - 1.0, 1e-16, 1e30), line, marker=mark, color=colour,
+        right.plot(courant, np.clip(rows[:, 0] - 1.0, 1e-12, 1e20), line, marker=mark, color=colour,
                    label=name)
-    right.set(xscale="log", yscale="log", ylim=(1e-16, 1e30), xlabel="Courant number",
+    right.set(xscale="log", yscale="log", ylim=(1e-13, 1e22), xlabel="Courant number",
               ylabel="largest energy gain / first energy", title="A bar bounces at its end, e = 1")
     for axes in (left, right):
         axes.legend(loc="best", fontsize=10)

@@ -148,7 +148,8 @@ def judge(points, given):
     for row in rows:
         reference = references.get(row.point.problem_text)
         trace = load_trace(folder, row.point.key)
-        if trace is not None and trace.finite and row.state in ("good", "capped", "diverged"):
+        able = reference and trace is not None and trace.finite
+        if able and row.state in ("good", "capped", "diverged"):
             row.errors = errors_against(trace, reference)
             row.bars = dict(reference.bars)
     given.references = references
@@ -161,7 +162,7 @@ def report(points, given):
     groups = series_of(rows)
     rows = [row for members in groups.values() for row in members]
     cost = given.cost or choose_cost(rows)
-    if not any(cost in row.costs for row in rows):
+    if given.cost and not any(cost in row.costs for row in rows):
         known = sorted({name for row in rows for name in row.costs})
         raise ScriptError(f"no run has the cost '{cost}'; there are: {', '.join(known) or 'none'}")
     fits = {(*key, error): fit_series(members, error, cost)
@@ -173,6 +174,12 @@ def report(points, given):
     for problem, text in truth.items():
         print(f"errors{' for ' + problem if problem else ''} against {text}")
     advice = advise(rows, given.errors[0], cost, given.wanted_error)
+    unknown = {row.point.problem_text for row in rows} - set(truth)
+    if unknown:
+        raise ScriptError(
+            "no exact solution is known, and no series has three good runs whose limit could stand for "
+            "one: give more steps (--dt), or other settings (--reference)"
+        )
     print(f"\n{advice.sentence}")
     write_csv(given.folder / "tradeoff.csv", rows)
     write_h5(given.folder / "tradeoff.h5", rows, fits, spent, {

@@ -265,7 +265,7 @@ def advise(rows, error, cost, wanted):
     )
     cheaper = [choice for choice in found if choice.cost < best.cost]
     if not cheaper:
-        return Advice(words + "; nothing cheaper was run.", best)
+        return Advice(words + "; nothing cheaper that was run ended well.", best)
     # the most accurate of the cheaper ones that were not a lucky hit, else of all
     honest = [c for c in cheaper if c.error + c.bar > wanted] or cheaper
     other = min(honest, key=lambda choice: choice.error)
@@ -292,6 +292,8 @@ def nothing_serves(rows, found, error, cost, wanted):
     )
     fits = [fit_series(members, error, cost) for (_, series), members in series_of(rows).items()
             if series == best.point.series]
+    if any(fit.verdict == Fit().verdict for fit in fits):
+        return words + "; more steps of it would show whether smaller ones do."
     orders = [fit.order for fit in fits if fit.rows and fit.floor is None]
     if len(orders) < len(fits) or best.point.tolerance is not None or best.bar > best.error:
         return words + "; it does not get better with the step alone."

@@ -196,7 +196,7 @@ def check_axes(deck, axes):
     """Axes need the card that they change."""
     for name in axes:
         keyword = AXES[name][0]
-        if name != "scheme" and not deck.has(keyword):
+        if not (deck.has(keyword) or (name == "scheme" and deck.has("SOLID SECTION"))):
             raise ScriptError(f"--{name}: '{deck.path}' has no card *{keyword}")
     if "PENALTY" in axes.get("method", ()) and not (
         "stiffness" in axes or deck.get("IMPACT", "STIFFNESS")

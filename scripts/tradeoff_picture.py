@@ -29,16 +29,14 @@ def draw(rows, errors, cost, fits, wanted=None, choice=None, title=""):
     figure, panels = plt.subplots(
         len(errors), len(problems), squeeze=False, layout="constrained",
         figsize=(6.2 * len(problems) + 4.6,
-                 max(4.8, 0.3 * longest * len(names) + 1.5) * len(errors)),
+                 max(4.8, 0.21 * longest * len(names) + 1.5) * len(errors)),
     )
     for i, error in enumerate(errors):
         for j, problem in enumerate(problems):
             panel = panels[i][j]
             members = [row for row in rows if row.point.problem_text == problem]
             chosen = [] if i or choice is None else choice.rows
-            panel_of(panel, members, error, cost, fits, names, chosen)
-            if wanted is not None and i == 0:
-                panel.axhline(wanted, color="0.35", lw=1.2, ls=(0, (6, 3)), zorder=1)
+            panel_of(panel, members, error, cost, fits, names, chosen, None if i else wanted)
             panel.set_title("" if i else problem or title, fontsize=12)
             if i == len(errors) - 1:
                 panel.set_xlabel(COST_LABELS.get(cost, cost.replace("_", " ")))
@@ -52,7 +50,7 @@ def draw(rows, errors, cost, fits, wanted=None, choice=None, title=""):
     return figure
 
 
-def panel_of(panel, rows, error, cost, fits, names, chosen):
+def panel_of(panel, rows, error, cost, fits, names, chosen, wanted):
     """One panel: curves, fitted lines, the front, bad points at the top edge."""
     panel.set_xscale("log")
     panel.set_yscale("log")
@@ -80,6 +78,10 @@ def panel_of(panel, rows, error, cost, fits, names, chosen):
         if row in rows:
             panel.plot(row.costs[cost], row.errors[error], "o", ms=17, mfc="none", mec=BLACK, mew=1.8,
                        zorder=4)
+    low, high = panel.get_ylim()
+    if wanted is not None and wanted > 0.01 * low:
+        panel.axhline(wanted, color="0.35", lw=1.2, ls=(0, (6, 3)), zorder=1)
+        panel.set_ylim(min(low, 0.7 * wanted), max(high, 1.5 * wanted))
     name_ticks(panel.xaxis, panel.get_xlim())
     name_ticks(panel.yaxis, panel.get_ylim())
     mark_bad(panel, [row for row in rows if not row.good(error)], cost, names)

@@ -30,7 +30,8 @@ STATUS_WORDS = {
     1: "refused", 2: "refused", 3: "file", 4: "stopped", 5: "interrupted", 6: "internal error",
 }
 # The largest energy, over that at the start or the work done, that a run may have
-MOST_ENERGY = 10.0
+MOST_ENERGY = 1.5
+JUDGED = "2"              # another number when outcomes are judged in another way
 
 
 class Interrupted(Exception):
@@ -48,7 +49,7 @@ def prepare(points, given, folder):
     program = program_digest(given.carom)
     for point in points:
         deck = edited_deck(given.deck, point)
-        point.key = content_key(deck, point, program, f"{given.exact}|{given.columns}")
+        point.key = content_key(deck, point, program, f"{JUDGED}|{given.exact}|{given.columns}")
         _, end = deck.time_step(point.problem)
         path = folder / f"{point.key}.inp"
         if not path.is_file():

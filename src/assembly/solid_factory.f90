@@ -12,7 +12,7 @@ module solid_factory
    use element_interface, only: element_type
    use solid, only: solid_type, new_solid, solid_material_type
    use solid_geometry, only: solid_shape_type, find_fault, fault_none, fault_coincident, &
-         fault_radius, fault_clockwise
+         fault_radius, fault_clockwise, fault_size
    implicit none
    private
 
@@ -99,6 +99,9 @@ contains
       case (fault_coincident)
          cause = 'has an edge of no length beside its size: two of its nodes coincide'
          cure = 'give its nodes different coordinates, or use a triangle'
+      case (fault_size)
+         cause = 'is '//to_text(maxval(maxval(x, 2) - minval(x, 2)))//' wide: its area is no number'
+         cure = 'write coordinates in units in which elements measure between 1e-150 and 1e150'
       case (fault_radius)
          cause = 'is axisymmetric and has a node at a negative radius x'
          cure = 'the axis is y and x is the radius: move the mesh to x of zero or more'

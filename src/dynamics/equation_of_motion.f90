@@ -64,9 +64,9 @@ contains
    end subroutine predict_motion
 
    !> The state that Newton's method starts from, after `predict_motion`. Where omega h is large the
-   !> acceleration throws the predictor (omega h)^2 times as far as a freedom ever gets, and what is
-   !> corrected from there has the round-off of that distance. Such freedoms start from where they
-   !> are.
+   !> acceleration throws the predictor (omega h)^2 times as far as a freedom ever gets, and the
+   !> velocity omega h times as far; what is corrected from there has the round-off of that
+   !> distance. Such freedoms start from where they are.
    subroutine start_near(self, state, dt, beta, trial)
       type(system_type), intent(in) :: self
       type(state_type), intent(in) :: state      !! at the start of the step
@@ -75,10 +75,14 @@ contains
       type(state_type), intent(inout) :: trial
       real(wp), parameter :: far = 16.0_wp
       type(newmark_type) :: newmark
+      real(wp) :: thrown(size(state%d))
       logical :: held(size(state%d))
 
       if (.not. beta > 0.0_wp) return
-      held = (0.5_wp - beta)*dt**2*abs(state%a) > far*(abs(state%d) + dt*abs(state%v))
+      thrown = (0.5_wp - beta)*dt**2*abs(state%a)
+      held = thrown > far*(abs(state%d) + dt*abs(state%v))
+      if (self%omega_max(scheme_implicit)*dt > far) held = held .or. &
+            thrown + dt*abs(state%v) > far*abs(state%d)
       if (.not. any(held)) return
       held = held .and. .not. self%structure%map%prescribed
       newmark = self%newmark

@@ -9,12 +9,18 @@ module solid_geometry
 
    public :: solid_shape_type, map_derivatives, depth_at, find_fault
    public :: fault_none, fault_coincident, fault_radius, fault_clockwise, fault_distorted
+   public :: fault_size
 
    integer, parameter :: fault_none = 0
    integer, parameter :: fault_coincident = 1   !! two nodes at one place
    integer, parameter :: fault_radius = 2       !! axisymmetric with a node at negative x
    integer, parameter :: fault_clockwise = 3    !! inside out everywhere
    integer, parameter :: fault_distorted = 4    !! folded or without area somewhere
+
+   integer, parameter :: fault_size = 5         !! its area is no normal number
+
+   !> Areas of elements beyond these sizes over- or underflow.
+   real(wp), parameter :: smallest_extent = 1.0e-151_wp, largest_extent = 1.0e151_wp
 
    !> What the solids of a group share beside the material.
    type :: solid_shape_type
@@ -68,7 +74,9 @@ contains
 
       fault = fault_none
       extent = maxval(maxval(x, 2) - minval(x, 2))
-      if (closest(x) <= 1.0e-10_wp*extent) then
+      if (extent > largest_extent .or. (extent > 0.0_wp .and. extent < smallest_extent)) then
+         fault = fault_size
+      else if (closest(x) <= 1.0e-10_wp*extent) then
          fault = fault_coincident
       else if (shape%plane == axisymmetric .and. minval(x(1, :)) < -1.0e-12_wp*extent) then
          fault = fault_radius

@@ -25,6 +25,8 @@ module fourth_order_hits
    end type candidates_type
 
    integer, parameter :: max_trials = 80
+   !> An impact before this part of the span happens at once.
+   real(wp), parameter :: at_once = 1.0e-13_wp
    !> A gap of this part of the limit of round-off is zero.
    real(wp), parameter :: found_part = 1.0e-2_wp
    !> The lowest point of a gap has been found when the next trial is nearer than this part of the
@@ -45,10 +47,11 @@ contains
       type(smooth_step_type), intent(out) :: step
       type(error_type), allocatable, intent(out) :: error
       type(candidates_type) :: candidates
-      integer :: row, i
+      integer :: row, i, n_located
       logical :: found, another
 
       call find_candidates(scene, motion, ahead, span, candidates)
+      n_located = 0
       do
          if (.not. any(candidates%guess >= 0.0_wp)) exit
          row = minloc(candidates%guess, dim=1, mask=candidates%guess >= 0.0_wp)
@@ -59,7 +62,9 @@ contains
             cycle
          end if
          candidates%guess(row) = step%dt
-         call add_overlapped(scene, motion, span, step, candidates, another)
+         n_located = n_located + 1
+         if (n_located > max_trials) exit
+         call add_overlapped(scene, motion, span, row, step, candidates, another)
          if (.not. another) exit
       end do
       hits%row = pack([(i, i=1, scene%rows%n)], candidates%guess >= 0.0_wp .and. &
@@ -76,24 +81,31 @@ contains
       type(smooth_step_type), intent(in) :: ahead
       type(span_type), intent(in) :: span
       type(candidates_type), intent(out) :: candidates
-      real(wp), dimension(scene%rows%n, 2) :: g, r, a
+      real(wp), dimension(2, scene%rows%n) :: g, r, a
       type(quintic_type) :: path
       logical :: free(scene%rows%n)
+      real(wp) :: one(scene%rows%n, 3)
       integer :: i
 
-      call rows_of(scene, motion, g(:, 1), r(:, 1), a(:, 1))
-      call rows_of(scene, ahead%to, g(:, 2), r(:, 2), a(:, 2))
+      call rows_of(scene, motion, one(:, 1), one(:, 2), one(:, 3))
+      g(1, :) = one(:, 1)
+      r(1, :) = one(:, 2)
+      a(1, :) = one(:, 3)
+      call rows_of(scene, ahead%to, one(:, 1), one(:, 2), one(:, 3))
+      g(2, :) = one(:, 1)
+      r(2, :) = one(:, 2)
+      a(2, :) = one(:, 3)
       free = may_hit(scene%rows) .and. .not. motion%touching
-      candidates%threshold = min(g(:, 1), 0.0_wp) - span%gap_limit
-      candidates%certain = g(:, 2) < candidates%threshold
+      candidates%threshold = min(g(1, :), 0.0_wp) - span%gap_limit
+      candidates%certain = g(2, :) < candidates%threshold
       candidates%guess = [(-1.0_wp, i=1, scene%rows%n)]
-      candidates%low = 0.0_wp*g(:, 1)
+      candidates%low = 0.0_wp*g(1, :)
       candidates%high = candidates%low + span%dt
       do i = 1, scene%rows%n
          if (.not. free(i)) cycle
-         path = new_quintic(span%dt, g(i, :), r(i, :), a(i, :))
+         path = new_quintic(span%dt, g(:, i), r(:, i), a(:, i))
          candidates%guess(i) = first_below(path, level_of(path, candidates%threshold(i)))
-         if (candidates%guess(i) > 0.0_wp .and. g(i, 1) <= span%gap_limit) then
+         if (candidates%guess(i) > 0.0_wp .and. g(1, i) <= span%gap_limit) then
             call start_open(path, span, candidates%guess(i), candidates%low(i))
          end if
       end do
@@ -177,13 +189,21 @@ contains
             end if
             if (.not. certain) call look_for_dip(at, x, span, next)
             if (.not. (next > low .and. next < high)) then
-               if (.not. certain .or. high - low <= spacing(span%dt)) exit
+               if (.not. certain) return
+               ! where it was taken to be open it was not
+               if (high - low <= spacing(span%dt)) low = 0.0_wp
+               if (high <= at_once*span%dt) exit
                next = (low + high)/2.0_wp
             end if
             x = next
          end do
          found = certain
-         if (found) call step_smoothly(scene, motion, high, step, error)
+         if (.not. found) return
+         if (high > at_once*span%dt) then
+            call step_smoothly(scene, motion, high, step, error)
+         else
+            call stay(motion, step)
+         end if
       end associate
    end subroutine locate
 
@@ -205,9 +225,17 @@ contains
          if (allocated(error)) return
          found = at(1) < candidates%threshold(row)
       end if
+      call stay(motion, step)
+   end subroutine look_at_once
+
+   !> The step to an impact that happens at once.
+   subroutine stay(motion, step)
+      type(contact_motion_type), intent(in) :: motion
+      type(smooth_step_type), intent(inout) :: step
+
       step%dt = 0.0_wp
       step%to = motion
-   end subroutine look_at_once
+   end subroutine stay
 
    !> Gap, rate and acceleration of a row after a part of the span.
    subroutine try_row(scene, motion, x, row, step, at, error)
@@ -258,10 +286,11 @@ contains
    end subroutine look_for_dip
 
    !> Other free rows that overlap at the impact located: they were hit before it.
-   subroutine add_overlapped(scene, motion, span, step, candidates, another)
+   subroutine add_overlapped(scene, motion, span, row, step, candidates, another)
       type(scene_type), intent(in) :: scene
       type(contact_motion_type), intent(in) :: motion
       type(span_type), intent(in) :: span
+      integer, intent(in) :: row                 !! the one that is hit
       type(smooth_step_type), intent(in) :: step
       type(candidates_type), intent(inout) :: candidates
       logical, intent(out) :: another
@@ -274,6 +303,7 @@ contains
       call rows_of(scene, step%to, g, r, a)
       overlapped = may_hit(scene%rows) .and. .not. motion%touching .and. &
             g < candidates%threshold - span%gap_limit
+      overlapped(row) = .false.
       another = any(overlapped)
       do i = 1, scene%rows%n
          if (.not. overlapped(i)) cycle

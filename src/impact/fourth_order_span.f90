@@ -23,7 +23,9 @@ module fourth_order_span
    !> A contact force below this part of the largest has vanished. A row let go so much too late
    !> leaves with an error in velocity of the square of that.
    real(wp), parameter :: release_tolerance = 1.0e-7_wp
-   integer, parameter :: max_trials = 40
+   !> A bracket below this part of the span is narrow enough whatever the force does in it.
+   real(wp), parameter :: width_limit = 1.0e-12_wp
+   integer, parameter :: max_trials = 60
 
    !> Between its ends the smallest contact force goes from positive to negative.
    type :: bracket_type
@@ -90,10 +92,10 @@ contains
       end do
       scale = maxval(abs(forces))
       limit = force_tolerance*scale
-      if (.not. any(forces(:, 2:) < -limit)) return
+      if (.not. any(forces < -limit)) return
       release = forces(:, 4) < -limit
       if (progress%at_limit) return
-      release = forces(:, 1) <= limit .and. forces(:, 2) < -limit
+      release = forces(:, 1) < -limit .or. (forces(:, 1) <= limit .and. forces(:, 2) < -limit)
       if (any(release)) then
          call release_rows(scene, motion, release, progress)
          call restart_acceleration(scene, motion, error)
@@ -135,6 +137,7 @@ contains
       bracket%f = bracket%f + tolerance/2.0_wp
       do i = 1, max_trials
          trial = next_trial(bracket, i)
+         if (bracket%x(2) - bracket%x(1) <= width_limit*span%dt) exit
          if (.not. (trial > bracket%x(1) .and. trial < bracket%x(2))) exit
          call take_part(scene, motion, trial, step, force, error)
          if (allocated(error)) return

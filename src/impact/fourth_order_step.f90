@@ -12,13 +12,18 @@ module fourth_order_step
          stage_value, span_works
    use compliance_store, only: complex_columns_type
    use constraint_rows, only: row_vector, row_forces, row_accelerations
-   use impact_scene, only: scene_type, contact_motion_type
+   use impact_scene, only: scene_type, contact_motion_type, gap_tolerance
    use step_contact, only: dependent_rows
    use contact_impulses, only: restart_acceleration
    implicit none
    private
 
    public :: smooth_step_type, step_smoothly, accept_step, stage_forces
+
+   !> What is added to the diagonal where rows depend on each other, in parts of its mean; what is
+   !> left of their motion must be below that part of it.
+   real(wp), parameter :: dependence = 1.0e-12_wp
+   real(wp), parameter :: dependence_limit = 1.0e-9_wp
 
    !> Where a step leads to and what it has found on its way.
    type :: smooth_step_type
@@ -62,14 +67,19 @@ contains
       type(smooth_step_type), intent(inout) :: step
       type(error_type), allocatable, intent(out) :: error
       complex(wp) :: forces(count(from%touching)), motion(scene%rows%n)
+      real(wp) :: at_rest
       logical :: solved
       integer :: i
 
+      ! what moves rows by so little in the step is round-off
+      at_rest = gap_tolerance*scene%geometry%size
       call find_columns(scene, pack([(i, i=1, scene%rows%n)], from%touching), step%dt)
       motion = row_products(scene, step%a)
       associate (held => scene%held)
          forces = -motion(held%rows)
-         call solve_complex_square(held%w, forces, solved)
+         call solve_complex_square(held%w, forces, dependence, solved)
+         if (solved) solved = all(abs(matmul(held%w, forces) + motion(held%rows)) <= &
+               dependence_limit*maxval(abs(motion)) + at_rest/step%dt**2)
          if (.not. solved) then
             call dependent_rows(scene, from%motion%t, error)
             return

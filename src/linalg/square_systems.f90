@@ -70,23 +70,46 @@ contains
       if (solved) rhs = x
    end subroutine solve_shifted
 
-   !> Solves a complex matrix x = rhs; `solved` is false if its rows depend on each other.
-   pure subroutine solve_complex_square(matrix, rhs, solved)
+   !> The same of a complex system with one right-hand side.
+   pure subroutine solve_complex_square(matrix, rhs, dependence, solved)
       complex(wp), intent(in) :: matrix(:, :)    !! (n, n)
       complex(wp), intent(inout) :: rhs(:)       !! right-hand side, then x
+      real(wp), intent(in) :: dependence         !! part that is added, 0: singular is unsolved
       logical, intent(out) :: solved
-      complex(wp) :: factor(size(rhs), size(rhs)), x(size(rhs), 1)
-      integer :: pivots(size(rhs)), i, info
+      complex(wp) :: shift, x(size(rhs)), rest(size(rhs))
+      integer :: i
 
       solved = .true.
       if (size(rhs) == 0) return
+      call solve_shifted_complex(matrix, rhs, (0.0_wp, 0.0_wp), solved)
+      if (solved .or. dependence <= 0.0_wp) return
+      shift = dependence*sum([(matrix(i, i), i=1, size(rhs))])/size(rhs)
+      x = rhs
+      call solve_shifted_complex(matrix, x, shift, solved)
+      if (.not. solved) return
+      rest = rhs - matmul(matrix, x)
+      call solve_shifted_complex(matrix, rest, shift, solved)
+      rhs = x + rest
+   end subroutine solve_complex_square
+
+   pure subroutine solve_shifted_complex(matrix, rhs, shift, solved)
+      complex(wp), intent(in) :: matrix(:, :), shift
+      complex(wp), intent(inout) :: rhs(:)
+      logical, intent(out) :: solved
+      complex(wp) :: factor(size(rhs), size(rhs)), x(size(rhs), 1)
+      integer :: pivots(size(rhs)), i, n, info
+
+      n = size(rhs)
       factor = matrix
+      do i = 1, n
+         factor(i, i) = factor(i, i) + shift
+      end do
       x(:, 1) = rhs
-      call zgesv(size(rhs), 1, factor, size(rhs), pivots, x, size(rhs), info)
+      call zgesv(n, 1, factor, n, pivots, x, n, info)
       solved = info == 0
       if (.not. solved) return
-      solved = minval([(abs(factor(i, i)), i=1, size(rhs))]) > pivot_tolerance*maxval(abs(matrix))
+      solved = minval([(abs(factor(i, i)), i=1, n)]) > pivot_tolerance*maxval(abs(matrix))
       if (solved) rhs = x(:, 1)
-   end subroutine solve_complex_square
+   end subroutine solve_shifted_complex
 
 end module square_systems

@@ -72,9 +72,9 @@ module steps
       real(wp) :: alpha = 0.0_wp                 !! HHT, -1/3 to 0
       real(wp) :: dt = 0.0_wp
       real(wp) :: duration = 0.0_wp
-      real(wp) :: dt_min = 0.0_wp                !! automatic increments: the smallest, 0: 1e-5 of T
+      real(wp) :: dt_min = 0.0_wp                !! automatic increments: the smallest, 0: default
       real(wp) :: dt_max = 0.0_wp                !! the largest, 0: T
-      real(wp) :: tolerance = 0.0_wp             !! of the local displacement error, 0: default
+      real(wp) :: tolerance = 0.0_wp             !! error asked of a dynamic step, 0: default
       integer :: n_modes = 0                     !! frequency steps
       logical :: new_boundaries = .false.        !! OP=NEW: those of earlier steps are dropped
       logical :: new_loads = .false.

@@ -88,14 +88,17 @@ contains
       type(critical_type), intent(in) :: critical
       type(source_line_type), allocatable, intent(inout) :: notes(:)
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: limit, sure, longest
+      real(wp) :: limit, sure
       character(len=:), allocatable :: over, cure
 
+      if (.not. critical%omega <= huge(critical%omega)) then
+         call fail_at(error, model%source, step%procedure_place, 'the highest frequency is not ' &
+               //'finite'//element_of(model, critical)//': stiffness over mass overflows', &
+               'give the model numbers that can be divided by each other: other units, more mass')
+         return
+      end if
       limit = stable_frequency(scene%system%newmark)
-      longest = step%dt
-      if (.not. step%direct) longest = merge(step%dt_max, step%duration, &
-            step%dt_max > 0.0_wp)
-      if (critical%omega*longest*(1.0_wp - slack) <= limit) return
+      if (critical%omega*step%dt*(1.0_wp - slack) <= limit) return
       sure = certain_frequency(scene%system, critical)
       over = ' is over the limit of beta = '//to_text(step%beta)//', ' &
             //to_text(limit, 4)//' / highest frequency = '
@@ -106,7 +109,7 @@ contains
                'take a step of at most '//to_text(limit/critical%omega)//cure)
       else
          call add_note(notes, note_at(model%source, step%time_place, 'warning: a step of ' &
-               //to_text(longest)//' may be over the limit of beta = '//to_text(step%beta) &
+               //to_text(step%dt)//' may be over the limit of beta = '//to_text(step%beta) &
                //': motion is stable for certain up to '//to_text(limit/critical%omega)//cure))
       end if
    end subroutine check_implicit

@@ -70,7 +70,7 @@ contains
          if (scene%rows%n == 0) return
          n = n_arrays
          if (scene%settings%method /= method_transformation .or. scene%settings%anchored) return
-         n = 6.0_wp*n_arrays
+         n = 5.0_wp*n_arrays
       end associate
    end function n_beside
 

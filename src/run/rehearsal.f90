@@ -5,8 +5,9 @@ module rehearsal
    use kinds, only: wp
    use errors, only: error_type, new_error, status_numerical
    use text, only: to_text, plural
-   use mesh, only: scheme_explicit
+   use mesh, only: scheme_implicit, scheme_explicit
    use steps, only: step_type
+   use stability_limit, only: stable_frequency
    use run_log, only: log_type, say
    use scene_setup, only: simulation_type
    use increments, only: checkpoint_type, keep_state, put_back
@@ -43,9 +44,10 @@ module rehearsal
    real(wp), parameter :: default_tolerance = 1.0e-3_wp
    integer, parameter :: default_most = 1000000
    real(wp), parameter :: smallest_share = 1.0e-8_wp   !! of the step, default of dt min
-   real(wp), parameter :: explicit_share = 0.45_wp     !! of the critical step: the coarse one is double
+   !> Largest increment, of the largest stable one: the coarse ones are double.
+   real(wp), parameter :: stable_share = 0.45_wp
    integer, parameter :: most_rehearsals = 10
-   real(wp), parameter :: aim = 0.6_wp                 !! estimate aimed at, of what is asked
+   real(wp), parameter :: aim = 0.5_wp                 !! estimate aimed at, of what is asked
    real(wp), parameter :: enough = 0.25_wp             !! an estimate from here on needs no change
    real(wp), parameter :: nothing = 1.0e-13_wp         !! errors below mean nothing
    real(wp), parameter :: round_off = 1.0e-10_wp       !! errors below may be that of impact times
@@ -53,8 +55,8 @@ module rehearsal
    real(wp), parameter :: near = 0.4_wp
    real(wp), parameter :: full_order = 2.0_wp, least_order = 0.5_wp
    !> Measured orders from here on are taken for two, the rest for scatter.
-   real(wp), parameter :: nearly_full = 1.4_wp
-   real(wp), parameter :: apart = 2.5_wp               !! runs that show an order, by their increments
+   real(wp), parameter :: nearly_full = 1.3_wp
+   real(wp), parameter :: apart = 1.9_wp               !! runs that show an order, by their increments
    real(wp), parameter :: large_error = 0.2_wp         !! errors above show none
    real(wp), parameter :: same_count = 0.05_wp
    !> Without a TOLERANCE in the deck increments are not made smaller than this beyond all cost.
@@ -94,18 +96,23 @@ contains
       type(plan_type), intent(out) :: self
       type(simulation_type), intent(in) :: simulation
       type(step_type), intent(in) :: step
+      real(wp) :: stable
 
       self%given = step%tolerance > 0.0_wp
       self%asked = merge(step%tolerance, default_tolerance, self%given)
       self%most = merge(step%max_increments, default_most, step%max_increments > 0)
       self%dt = step%dt
-      self%local_tolerance = min(1.0e-2_wp, max(1.0e-7_wp, 100.0_wp*self%asked**1.5_wp))
+      self%local_tolerance = min(1.0e-2_wp, max(1.0e-7_wp, 300.0_wp*self%asked**1.5_wp))
       self%settings%duration = step%duration
       associate (limits => self%settings%limits)
          limits = [step%dt_min, step%dt_max]
          if (.not. limits(1) > 0.0_wp) limits(1) = min(step%dt, smallest_share*step%duration)
          if (.not. limits(2) > 0.0_wp) limits(2) = step%duration
-         limits(2) = min(limits(2), explicit_share*simulation%critical(scheme_explicit)%step)
+         limits(2) = min(limits(2), stable_share*simulation%critical(scheme_explicit)%step)
+         stable = stable_frequency(simulation%scene%system%newmark)
+         if (stable > 0.0_wp .and. stable < sqrt(huge(stable)) .and. simulation%critical(scheme_implicit)%omega > 0.0_wp) &
+               limits(2) = min(limits(2), stable_share*stable &
+               /simulation%critical(scheme_implicit)%omega)
          limits(1) = min(limits(1), limits(2))
       end associate
       call set_sizes(self)
@@ -170,7 +177,7 @@ contains
       self%ready = (trusted .or. (target >= near*trial%size .and. estimate < large_error)) .and. &
             target >= trial%size/4.0_wp .and. target <= 1.5_wp*trial%size
       if (self%ready) return
-      if (target < trial%size) self%size = max(min(2.5_wp*target, trial%size/1.5_wp), &
+      if (target < trial%size) self%size = max(min(2.5_wp*target, trial%size/2.0_wp), &
             trial%size/4.0_wp)
    end subroutine judge
 

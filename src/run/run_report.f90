@@ -70,9 +70,12 @@ contains
          if (len_trim(step%name) > 0) line = line//' '//trim(step%name)
          if (step%procedure == procedure_frequency) then
             call say(log, line//', '//plural(step%n_modes, 'mode'))
-         else
+         else if (step%direct) then
             call say(log, line//', '//plural(count_increments(step), 'increment')//' of ' &
                   //to_text(step%dt)//' over '//to_text(step%duration))
+         else
+            call say(log, line//', automatic increments from '//to_text(step%dt)//' on over ' &
+                  //to_text(step%duration))
          end if
          entries = profile_entries(system%profile)
          call say(log, '  '//plural(system%structure%map%n_eq, 'equation')//', profile ' &

@@ -22,7 +22,7 @@ module scene_setup
    use initial_contact, only: adjustment_type, build_rows, adjust_pairs, adjustment_remark, &
          check_overlaps, check_jump
    use impact_method, only: impact_method_type
-   use increment_count, only: count_increments
+   use increment_count, only: count_increments, check_remainder
    use massless_contacts, only: mark_massless_rows
    use automatic_groups, only: partition_type, resolve_automatic
    use impact_factory, only: make_impact_method, check_method, check_anchor
@@ -250,6 +250,8 @@ contains
          call mark_massless_rows(self%model, self%contact, system, self%scene%rows, error)
          if (allocated(error)) return
          call check_method(self%model, self%scene%settings, step, system%newmark%beta, error)
+         if (allocated(error)) return
+         call check_remainder(self%model, self%scene%settings, step, error)
          if (allocated(error)) return
          call check_order(self%model, self%scene, step, error)
          if (allocated(error)) return

@@ -140,14 +140,15 @@ class ExtremeRun(Run):
             usage = self._wait(process, time.monotonic() + 10*limit)
         self.cpu_seconds = usage.ru_utime + usage.ru_stime
         self.hung = self.hung or (process.returncode < 0 and self.cpu_seconds > 0.95*limit)
-        #: most memory it held, in bytes
-        self.memory = usage.ru_maxrss*1024
         return process.returncode, (folder / 'terminal.txt').read_text(errors='replace')
 
     def _wait(self, process, deadline):
         """Waits for the end, kills at the deadline; what was used up by then."""
         self.hung, pause = False, 0.001
+        #: most memory it held, in bytes (ru_maxrss counts this script's too, from before the exec)
+        self.memory = 0
         while True:
+            self.memory = max(self.memory, most_resident(process.pid))
             done, state, usage = os.wait4(process.pid, os.WNOHANG)
             if done:
                 process.returncode = os.waitstatus_to_exitcode(state)
@@ -177,6 +178,16 @@ class ExtremeRun(Run):
         if self.file:
             self.file.visititems(look)
         return names
+
+
+def most_resident(process):
+    """The largest resident size of a running process so far, in bytes; 0 if it has ended."""
+    try:
+        status = Path(f'/proc/{process}/status').read_text()
+    except OSError:
+        return 0
+    found = re.search(r'^VmHWM:\s*(\d+) kB', status, re.M)
+    return 1024*int(found.group(1)) if found else 0
 
 
 def _is_sound(data):

@@ -142,42 +142,35 @@ def status(run):
 
 
 def check_automatic(checks):
-    errors = []
-    for tolerance in (1e-3, 1e-4, 1e-5):
-        run = run_deck(OSCILLATOR + step(f'DYNAMIC, TOLERANCE={tolerance!r}', '0.5, 10',
-                                         prints='*NODE PRINT\nU\n*ENERGY PRINT\n'))
-        t, u = run['history/time'], run['history/node_1/U1']
-        errors.append(np.max(np.abs(u - np.cos(2 * t))))
-        h = status(run)[:, 4]
-        checks.at_most(h[0], 0.3, f'oscillator, tolerance {tolerance:g}: 0.5 was cut back, {len(h)} increments')
-        # a local error of tolerance each increment, all adding up
-        checks.at_most(errors[-1], 2 * tolerance * len(h), f'oscillator, tolerance {tolerance:g}: error')
-        checks.close(t[-1], 10.0, 1e-12, f'oscillator, tolerance {tolerance:g}: end')
-        checks.at_most(np.max(np.abs(run['energy/balance_error'])) / 2, 1e-9,
-                       f'oscillator, tolerance {tolerance:g}: balance error')
-    checks.at_least(np.log(errors[0] / errors[-1]) / np.log(100), 0.6,
-                    'oscillator: power of the tolerance in the error')
-    run = run_deck(OSCILLATOR + step('DYNAMIC, TOLERANCE=1e-3', '0.0005, 10',
+    """What verify_tolerance.py does not look at: limits and growth of increments, balance, a solid."""
+    run = run_deck(OSCILLATOR + step('DYNAMIC, TOLERANCE=1e-3', '0.5, 10',
+                                     prints='*NODE PRINT\nU\n*ENERGY PRINT\n'))
+    h = status(run)[:, 4]
+    checks.at_most(h[0], 0.1, f'oscillator, 0.5 was cut back: {len(h)} increments')
+    checks.close(run['history/time'][-1], 10.0, 1e-12, 'oscillator: end')
+    checks.at_most(np.max(np.abs(run['energy/balance_error'])) / 2, 1e-9, 'oscillator: balance error')
+    run = run_deck(OSCILLATOR + step('DYNAMIC, TOLERANCE=1e-3', '1e-5, 10',
                                      prints='*NODE PRINT\nU\n'))
     h = status(run)[:, 4]
-    checks.at_least(h.max() / h[0], 50, f'oscillator begun with 0.0005: growth over {len(h)} increments')
-    run = run_deck(OSCILLATOR + step('DYNAMIC, TOLERANCE=1e-3', '0.0005, 10, 0.0005, 0.05',
+    checks.at_least(h.max() / h[0], 50, f'oscillator begun with 1e-5: growth over {len(h)} increments')
+    run = run_deck(OSCILLATOR + step('DYNAMIC, TOLERANCE=1e-2', '0.001, 10, 0.001, 0.008',
                                      prints='*NODE PRINT\nU\n'))
-    checks.close(status(run)[:, 4].max(), 0.05, 1e-9, 'oscillator: the largest increment is kept to')
+    checks.close(status(run)[:, 4].max(), 0.008, 1e-9, 'oscillator: the largest increment is kept to')
+    t, u = run['history/time'], run['history/node_1/U1']
+    # 20 rad at 0.016 a step: 20 * 0.016^2 / 12
+    checks.at_most(np.max(np.abs(u - np.cos(2 * t))), 5e-4, 'oscillator: and is as accurate as that')
 
     # the solid against many fixed steps
     mesh, text = cantilever(('IMPLICIT', 'IMPLICIT'))
     fine = last_frame(run_deck(text + step('DYNAMIC, DIRECT', '0.0005, 1.5',
                                            prints='*NODE FILE, FREQUENCY=3000\nU\n')), 'U')
-    distances = []
-    for tolerance in (1e-3, 1e-5):
+    for tolerance in (1e-2, 1e-3, 1e-4):
         run = run_deck(text + step(f'DYNAMIC, TOLERANCE={tolerance!r}', '0.05, 1.5'))
-        distances.append(np.linalg.norm(last_frame(run, 'U') - fine) / np.linalg.norm(fine))
         h = status(run)[:, 4]
-        checks.at_most(distances[-1], 20 * tolerance**(2 / 3),
+        distance = np.max(np.abs(last_frame(run, 'U') - fine)) / np.max(np.abs(fine))
+        checks.at_most(distance, 5 * tolerance,
                        f'solid, tolerance {tolerance:g}: error at the end, {len(h)} increments '
                        f'from {h.min():.3g} to {h.max():.3g}')
-    checks.at_most(distances[1] / distances[0], 0.2, 'solid: a smaller tolerance, a smaller error')
 
 
 def check_static(checks):
