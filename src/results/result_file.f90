@@ -69,15 +69,17 @@ contains
       if (allocated(error)) return
       if (self%plan%energy) call new_energies(self%energy, self%file, scene, error)
       if (allocated(error)) return
-      call new_events(self, error)
+      call new_events(self, list, error)
       if (allocated(error)) return
       call new_gap_probe(self%gaps, scene)
       call new_contact_faces(self%faces, model, list)
       call write_model(self%file, model, error)
    end subroutine open_results
 
-   subroutine new_events(self, error)
+   !> The table of events; its texts are as long as the longest.
+   subroutine new_events(self, list, error)
       type(result_file_type), intent(inout) :: self
+      type(contact_pair_list_type), intent(in) :: list
       type(error_type), allocatable, intent(out) :: error
       character(len=15), parameter :: names(5) = ['time           ', 'gap_rate_before', &
             'gap_rate_after ', 'impulse        ', 'beta           ']
@@ -87,8 +89,9 @@ contains
             'gap rate after the event                          ', &
             'impulse along the normal                          ', &
             'Newmark beta of the step with the event           ']
-      integer :: i
+      integer :: i, longest
 
+      longest = max(1, min(text_length, maxval([0, len_trim(list%names)])))
       call self%events%create(self%file, '/events', 'impacts, captures and releases', error)
       do i = 1, size(names)
          if (allocated(error)) return
@@ -103,10 +106,10 @@ contains
       call self%events%add_integer_column(self%file, 'factorizations', &
             'factorizations of the run up to then', error)
       if (allocated(error)) return
-      call self%events%add_text_column(self%file, 'kind', text_length, &
+      call self%events%add_text_column(self%file, 'kind', len(event_name(event_impact)), &
             'impact, capture, release, contact (first overlap) or limit (of events)', error)
       if (allocated(error)) return
-      call self%events%add_text_column(self%file, 'pair', text_length, &
+      call self%events%add_text_column(self%file, 'pair', longest, &
             'name of the contact pair', error)
    end subroutine new_events
 

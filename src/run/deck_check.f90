@@ -17,8 +17,8 @@ module deck_check
 
    public :: preview_type, check_deck, prepare, report_preview
 
-   !> Elements up to which a run looks at each for advice; a check always does.
-   integer, parameter :: most_elements = 5000
+   !> Elements up to which a run, and a check, look at each for advice.
+   integer, parameter :: most_elements(2) = [5000, 200000]
 
    !> What is known of a run before it begins.
    type :: preview_type
@@ -75,17 +75,17 @@ contains
    end subroutine prepare
 
    !> Memory, features and advice of a step in force.
-   subroutine look_ahead(simulation, i_step, thorough, preview)
+   subroutine look_ahead(simulation, i_step, aloud, preview)
       type(simulation_type), intent(in) :: simulation
       integer, intent(in) :: i_step
-      logical, intent(in) :: thorough
+      logical, intent(in) :: aloud               !! this is a check
       type(preview_type), intent(inout) :: preview
       type(feature_list_type) :: features
 
       call add_step_memory(preview%memory, simulation, simulation%model%steps(i_step))
       call list_features(features, simulation, i_step)
-      call advise_step(preview%advice, simulation, i_step, features, thorough .or. &
-            simulation%model%elements%n <= most_elements)
+      call advise_step(preview%advice, simulation, i_step, features, &
+            simulation%model%elements%n <= most_elements(merge(2, 1, aloud)))
       call advise_pairs(simulation, preview%may_meet)
       if (i_step > 1 .and. features%total() <= preview%features%total()) return
       preview%features = features

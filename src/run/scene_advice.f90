@@ -51,7 +51,7 @@ contains
             if (thorough) call advise_mixed(self, simulation, step)
             call advise_energies(self, simulation, features)
          end if
-         call advise_output(self, features)
+         if (step%direct) call advise_output(self, features)
       end associate
    end subroutine advise_step
 
@@ -130,29 +130,14 @@ contains
          call find_own_limits(structure, limits)
       end associate
       where (.not. counted) limits = huge(1.0_wp)
-      without = limit_without(limits, max(1, int(few_elements*real(n, wp))))
-      if (without < worth_mixing*step%dt/margin) return
-      n_short = count(limits < without)
+      n_short = count(limits < worth_mixing*step%dt/margin)
+      if (n_short == 0 .or. real(n_short, wp) > few_elements*real(n, wp)) return
+      without = minval(limits, mask=limits >= worth_mixing*step%dt/margin)
       call self%add(to_text(n_short)//' of '//to_text(n)//' explicit elements, as element ' &
             //to_text(simulation%model%elements%id(minloc(limits, dim=1)))//', keep the step at ' &
             //to_text(step%dt, 3)//'; the others would bear '//to_text(margin*without, 3)//': ' &
             //'*ELEMENT GROUP, SCHEME=AUTO and such a step make these few implicit')
    end subroutine advise_mixed
-
-   !> The smallest limit but for that of a few elements.
-   pure real(wp) function limit_without(limits, n_few) result(least)
-      real(wp), intent(in) :: limits(:)
-      integer, intent(in) :: n_few
-      logical :: left(size(limits))
-      integer :: i
-
-      left = .true.
-      do i = 1, n_few
-         left(minloc(limits, dim=1, mask=left)) = .false.
-      end do
-      least = minval(limits, mask=left)
-      if (least > 0.5_wp*huge(1.0_wp)) least = 0.0_wp
-   end function limit_without
 
    !> Energies of many groups.
    subroutine advise_energies(self, simulation, features)
