@@ -4,8 +4,9 @@
 module energy_ledger
    use kinds, only: wp
    use mesh, only: scheme_implicit, scheme_explicit
-   use structure, only: elastic_force, strain_energy, plastic_work, group_strain_energy, &
-         group_kinetic_energy, damping_force, inertia_force, count_resisting
+   use structure, only: elastic_force, damping_force, inertia_force, count_resisting
+   use structure_energy, only: strain_energy, plastic_work, group_strain_energy, &
+         group_kinetic_energy
    use external_load, only: load_at
    use motion_state, only: state_type
    use cost_account, only: enter, leave, phase_elements

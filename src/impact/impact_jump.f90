@@ -8,8 +8,8 @@ module impact_jump
          capture_speeds, event_impact, event_capture, event_limit
    use row_compliance, only: compliance_type, mass_compliance, pushed, join_rates, split_forces
    use rough_rows, only: solve_rows
-   use contact_impulses, only: hold_acceleration, restart_acceleration, project_touching, &
-         book_impulse, book_friction, book_reactions, dependent_impulses
+   use contact_impulses, only: hold_acceleration, restart_acceleration, project_touching
+   use impulse_account, only: book_impulse, book_friction, book_reactions, dependent_impulses
    implicit none
    private
 

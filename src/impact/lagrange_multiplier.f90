@@ -40,8 +40,8 @@ module lagrange_multiplier
    use impact_method, only: impact_method_type
    use row_compliance, only: compliance_type, mass_compliance, pushed, join_rates, split_forces
    use rough_rows, only: solve_rows
-   use contact_impulses, only: carry_acceleration, project_touching, follow_wall, book_impulse, &
-         book_friction, book_reactions, dependent_impulses
+   use contact_impulses, only: carry_acceleration, project_touching, follow_wall
+   use impulse_account, only: book_impulse, book_friction, book_reactions, dependent_impulses
    use row_following, only: rows_ahead, rows_here, settle_rows
    use first_contacts, only: find_first_contacts
    use constrained_step, only: advance_smoothly

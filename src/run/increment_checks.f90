@@ -30,24 +30,33 @@ contains
             all(abs(motion%a) <= huge(1.0_wp))) return
       call new_error(error, status_numerical, &
             'the motion is not finite (NaN or infinite) at time ' &
-            //to_text(motion%t)//'; the last good increment is at '//to_text(motion%t - dt) &
-            //new_line('a') &
+            //to_text(motion%t)//last_good(motion%t, dt)//new_line('a') &
             //'  cure: a smaller step, and a look at the loads and the energy before it')
    end subroutine check_finite
 
    !> Energies are squares: they overflow while the motion is still finite.
-   subroutine check_energies(ledger, t, error)
+   subroutine check_energies(ledger, t, dt, error)
       type(ledger_type), intent(in) :: ledger    !! of the last increment closed
-      real(wp), intent(in) :: t
+      real(wp), intent(in) :: t, dt              !! its end and its size
       type(error_type), allocatable, intent(out) :: error
 
       if (abs(ledger%total) <= huge(1.0_wp) .and. abs(ledger%balance_error) <= huge(1.0_wp)) return
       call new_error(error, status_numerical, 'the energies are not finite at time '//to_text(t) &
             //': kinetic '//to_text(ledger%kinetic)//', strain '//to_text(ledger%strain) &
-            //', external work '//to_text(ledger%external_work)//new_line('a') &
+            //', external work '//to_text(ledger%external_work) &
+            //last_good(t, dt)//new_line('a') &
             //'  cure: other units, so that the squares of displacements and velocities do not ' &
             //'overflow; or a smaller step, if energy grew from step to step')
    end subroutine check_energies
+
+   !> Up to where the results go, nothing at the start of a run.
+   function last_good(t, dt) result(words)
+      real(wp), intent(in) :: t, dt
+      character(len=:), allocatable :: words
+
+      words = ''
+      if (dt > 0.0_wp) words = '; the last good increment is at '//to_text(t - dt)
+   end function last_good
 
    !> EVENTS=ANCHOR interpolates between the ends of steps, which makes energy of nothing where a
    !> step is many periods long. Half of all there is must not come from there.

@@ -19,8 +19,8 @@ module scene_setup
    use critical_check, only: check_critical, find_both
    use contact_pairs, only: contact_pair_list_type
    use impact_scene, only: scene_type, contact_motion_type, new_contact_motion
-   use initial_contact, only: adjustment_type, build_rows, adjust_pairs, adjustment_remark, &
-         check_overlaps, check_jump
+   use initial_contact, only: adjustment_type, build_rows, adjust_pairs, adjustment_remark
+   use initial_overlap, only: check_overlaps, check_jump
    use impact_method, only: impact_method_type
    use increment_count, only: count_increments, check_remainder
    use massless_contacts, only: mark_massless_rows
