@@ -121,7 +121,10 @@ def guarded(name, part, carom, given):
 
 def facts(carom, given):
     """What the page says of itself: program, command."""
-    said = subprocess.run([carom, "--version"], capture_output=True, text=True).stdout.strip()
+    try:
+        said = subprocess.run([carom, "--version"], capture_output=True, text=True).stdout.strip()
+    except OSError as error:
+        raise ScriptError(f"cannot run '{carom}': {error.strerror}") from None
     only = f" --only {given.only}" if given.only else ""
     return f"Program: {said}. Made by: python scripts/report.py --jobs {given.jobs}{only}."
 
@@ -135,6 +138,7 @@ def main():
         return
     chosen = choose(given.only, names)
     carom = find_carom(given.carom)
+    lead = [SOURCE, HOW, facts(carom, given)]
     runs = Runs(carom, given.output, given.jobs)
     print("computing the figures of the source", flush=True)
     sections = source_sections([f for f in figures if f.number in chosen], runs, given.output)
@@ -144,7 +148,7 @@ def main():
             print(f"computing the part '{name}'", flush=True)
             sections += guarded(name, part, carom, given)
     path = Path(given.output) / "report.html"
-    path.write_text(page(TITLE, [SOURCE, HOW, facts(carom, given)], sections), encoding="utf-8")
+    path.write_text(page(TITLE, lead, sections), encoding="utf-8")
     print(path)
     failed = [section.title for section in sections if section.failure]
     for title in failed:

@@ -113,12 +113,12 @@ def contents(sections):
 
 
 def summary_table(sections, outcome):
-    """The claims that ended in one way."""
+    """The claims that ended in one way; those of carom that hold stand in their sections alone."""
     rows = []
     for section in sections:
         link = f'<a href="#{section.anchor}">{escape(section.title.partition(":")[0])}</a>'
         for verdict in section.verdicts:
-            if verdict.outcome == outcome:
+            if verdict.outcome == outcome and not (verdict.ours and outcome == HOLDS):
                 cells = [("carom: " if verdict.ours else "") + verdict.claim, verdict.measured,
                          verdict.limit]
                 rows.append(f'<tr class="{CLASSES[outcome]}"><td>{link}</td>'
@@ -134,11 +134,13 @@ def summary(sections):
     """All claims, those that do not hold first, and how many of the source's hold."""
     counts = {outcome: sum(v.outcome == outcome and not v.ours for s in sections for v in s.verdicts)
               for outcome in CLASSES}
+    ours = [v.outcome for s in sections for v in s.verdicts if v.ours]
     said = ", ".join(f"{number} {'hold' if what == HOLDS else what.replace('does', 'do')}"
                      for what, number in counts.items())
     failed = [section.title for section in sections if section.failure]
     lines = [f"<p>Of the source's claims put to runs here: {escape(said)}. "
-             "Those that begin with “carom:” are claims of this program.</p>"]
+             "Those that begin with “carom:” are claims of this program: "
+             f"{ours.count(HOLDS)} of {len(ours)} hold.</p>"]
     if failed:
         lines.append(f'<p class="broken">Failed parts: {escape("; ".join(failed))}</p>')
     tables = [summary_table(sections, outcome) for outcome in (FAILS, OPEN, HOLDS)]

@@ -10,6 +10,7 @@ import shutil
 import signal
 import subprocess
 import sys
+from html import escape
 
 from carom_results import Results, ScriptError
 from report_page import Section, folded, image_tag, table
@@ -142,7 +143,8 @@ def recommended(section, folder, wanted):
     """Adds to the section of a trade what tradeoff.py recommends, and how that turned out."""
     with Results(str(folder / "tradeoff.h5")) as results:
         attributes = results.file.attrs
-        section.paragraph(f"{attributes['recommendation']} Errors against {attributes['truth']}.")
+        said = f"{attributes['recommendation']} Errors against {attributes['truth']}."
+        section.body.insert(0, f"<p>{escape(said)}</p>")
         asked = results.file["points/tolerance"].asstr()[:]
         found = results.column("points", "displacement") if (asked != "").any() else None
     again = re.search(r"^verified: run again it is off by ([-+.\deE]+)", section.output, re.M)

@@ -18,6 +18,7 @@ module impact_time
       real(wp) :: beta = 0.25_wp
       logical, allocatable :: held(:)        !! (n_rows) rows held bilaterally in every trial
       real(wp), allocatable :: gaps(:)       !! (n_rows) at the start, by rows at their places there
+      real(wp), allocatable :: rates(:)      !! (n_rows) gap rates there, likewise
       logical, allocatable :: ignored(:)     !! (n_rows) rows that are not hit in this step
       real(wp) :: gap_limit = 0.0_wp         !! smaller gaps are round-off
       real(wp) :: found_limit = 0.0_wp       !! smaller gaps are near enough to an impact
@@ -117,13 +118,25 @@ contains
       bracket = [0.0_wp, high]
       if (path%g0 > span%gap_limit) return
       bracket = 0.0_wp
-      if (path%r0 <= span%rate_limit) return
+      if (path%r0 <= span%rate_limit .and. .not. leaves(scene, span, row)) return
       ! it leaves the wall first, and comes back
       rise = find_rise(path)
       if (rise < 0.0_wp .or. rise >= high) rise = high/2.0_wp
       bracket = [rise, high]
       call start_open(scene, from, span, row, bracket, error)
    end subroutine bracket_hit
+
+   !> A row that opens where it is, though the row placed at the end of the span, maybe on the far
+   !> side of a ring, says that it closes.
+   pure function leaves(scene, span, row) result(opens)
+      type(scene_type), intent(in) :: scene
+      type(span_type), intent(in) :: span
+      integer, intent(in) :: row
+      logical :: opens
+
+      opens = scene%rows%moving .and. allocated(span%rates)
+      if (opens) opens = span%gaps(row) < far_gap/2.0_wp .and. span%rates(row) > span%rate_limit
+   end function leaves
 
    !> The cubic only guesses where a row that leaves the wall turns back: halves the start of the
    !> bracket until the gap is open there on the path that is really taken. A row that is never

@@ -5,7 +5,7 @@ module transformation
    use kinds, only: wp
    use errors, only: error_type
    use surfaces, only: beta_given
-   use constraint_rows, only: row_gaps
+   use constraint_rows, only: row_gaps, row_rates
    use impact_scene, only: scene_type, contact_motion_type, accept_span, exchange_motions, &
          gap_tolerance, merge_gap_tolerance, merge_time_tolerance
    use impact_method, only: impact_method_type
@@ -70,7 +70,7 @@ contains
       type(span_type) :: span
       type(hits_type) :: hits
       logical :: release(scene%rows%n), aim
-      real(wp) :: gaps(scene%rows%n)   ! where the motion is
+      real(wp), dimension(scene%rows%n) :: gaps, rates   ! where the motion is
 
       progress%dt = dt
       progress%t_end = motion%motion%t + dt
@@ -78,7 +78,7 @@ contains
       progress%beta = scene%system%newmark%beta
       allocate (progress%let_go(scene%rows%n), source=-dt)
       allocate (progress%stubborn(scene%rows%n), progress%ignored(scene%rows%n), source=.false.)
-      gaps = row_gaps(scene%rows, motion%motion)
+      call look_here(scene, motion, gaps, rates)
       aim = .true.
       call exchange_motions(scene%spare, next)
       do while (progress%remaining > time_tolerance*dt)
@@ -90,6 +90,7 @@ contains
          if (allocated(error)) return
          if (span%dt <= 0.0_wp) cycle
          span%gaps = gaps
+         if (scene%rows%moving) span%rates = rates
          span%ignored = progress%ignored
          call find_hits(scene, motion, next, span, hits, error)
          if (allocated(error)) return
@@ -97,7 +98,7 @@ contains
             call take_span(scene, motion, next, span%dt, span, progress, error)
             if (allocated(error)) return
             if (any(release)) call release_rows(scene, motion, release, progress)
-            gaps = row_gaps(scene%rows, motion%motion)
+            call look_here(scene, motion, gaps, rates)
          else if (abs(progress%beta - impact_beta(scene)) > 0.0_wp) then
             ! an impact step has its own beta: solve it again from where it stands
             progress%beta = impact_beta(scene)
@@ -105,13 +106,23 @@ contains
          else
             call go_through_impact(scene, motion, next, span, hits, progress, error)
             if (allocated(error)) return
-            gaps = row_gaps(scene%rows, motion%motion)
+            call look_here(scene, motion, gaps, rates)
          end if
       end do
       call exchange_motions(scene%spare, next)
       motion%motion%t = progress%t_end
       call settle_rows(scene, motion, dt, error)
    end subroutine advance
+
+   !> Gaps, and of bodies that slide their rates, by rows at their places.
+   subroutine look_here(scene, motion, gaps, rates)
+      type(scene_type), intent(in) :: scene
+      type(contact_motion_type), intent(in) :: motion
+      real(wp), intent(inout) :: gaps(:), rates(:)   !! (n_rows)
+
+      gaps = row_gaps(scene%rows, motion%motion)
+      if (scene%rows%moving) rates = row_rates(scene%rows, motion%motion)
+   end subroutine look_here
 
    !> Takes a span of smooth motion.
    subroutine take_span(scene, motion, next, dt, span, progress, error)

@@ -13,7 +13,7 @@ module increment_ladder
       real(wp) :: dt_min = 0.0_wp, dt_max = 0.0_wp
       integer :: n_easy = 0                      !! increments in a row that could have been larger
       integer :: n_needed = 2                    !! of them before one is larger
-      integer :: n_since = -1                    !! since it was doubled, -1 where that has proved right
+      integer :: n_since = -1                    !! since it was doubled, -1: long ago
       integer :: n_changes = 0
    end type ladder_type
 
@@ -36,12 +36,13 @@ contains
       self%dt = min(max(dt, self%dt_min), self%dt_max)
    end subroutine start_ladder
 
-   !> Whether nothing smaller may be tried.
+   !> Whether nothing smaller may be tried. An increment stretched to the end of a step is above the
+   !> ladder's smallest, which is tried no more then.
    pure logical function lower_limit(self, dt)
       type(ladder_type), intent(in) :: self
       real(wp), intent(in) :: dt
 
-      lower_limit = dt <= self%dt_min
+      lower_limit = dt <= self%dt_min .or. self%dt <= self%dt_min
    end function lower_limit
 
    !> Half of an increment that was too large. One that had just been doubled in smooth motion has

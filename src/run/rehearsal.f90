@@ -7,6 +7,7 @@ module rehearsal
    use text, only: to_text, plural
    use mesh, only: scheme_implicit, scheme_explicit
    use steps, only: step_type
+   use surfaces, only: method_transformation
    use stability_limit, only: stable_frequency
    use run_log, only: log_type, say
    use scene_setup, only: simulation_type
@@ -34,7 +35,7 @@ module rehearsal
       real(wp) :: local_tolerance = 0.0_wp       !! at size 1
       type(twin_settings_type) :: settings       !! of the size chosen
       type(trial_type) :: last                   !! rehearsal
-      type(trial_type) :: base                   !! the first one with an error small enough to show an order
+      type(trial_type) :: base                   !! the first one small enough to show an order
       real(wp) :: size = 1.0_wp                  !! to be taken next
       real(wp) :: order = 2.0_wp                 !! of the error in the size
       logical :: ready = .false.                 !! the next run is the real one
@@ -56,7 +57,7 @@ module rehearsal
    real(wp), parameter :: full_order = 2.0_wp, least_order = 0.5_wp
    !> Measured orders from here on are taken for two, the rest for scatter.
    real(wp), parameter :: nearly_full = 1.3_wp
-   real(wp), parameter :: apart = 1.9_wp               !! runs that show an order, by their increments
+   real(wp), parameter :: apart = 1.9_wp               !! runs that show an order
    real(wp), parameter :: large_error = 0.2_wp         !! errors above show none
    real(wp), parameter :: same_count = 0.05_wp
    !> Without a TOLERANCE in the deck increments are not made smaller than this beyond all cost.
@@ -84,9 +85,10 @@ contains
          call say(log, '  rehearsal: '//plural(trial%n, 'increment')//', estimated error ' &
                //to_text(estimated_error(trial, plan%base, plan%order), 3))
          call judge(plan, trial)
-         if (plan%given .and. wanted_count(plan) > real(plan%most, wp)) &
-               call refuse(plan, wanted_count(plan), error)
-         if (allocated(error)) return
+         if (plan%given .and. wanted_count(plan) > real(plan%most, wp)) then
+            call refuse(plan, wanted_count(plan), error)
+            return
+         end if
       end do
       call set_sizes(plan)
    end subroutine rehearse
@@ -110,11 +112,18 @@ contains
          if (.not. limits(2) > 0.0_wp) limits(2) = step%duration
          limits(2) = min(limits(2), stable_share*simulation%critical(scheme_explicit)%step)
          stable = stable_frequency(simulation%scene%system%newmark)
-         if (stable > 0.0_wp .and. stable < sqrt(huge(stable)) .and. simulation%critical(scheme_implicit)%omega > 0.0_wp) &
-               limits(2) = min(limits(2), stable_share*stable &
-               /simulation%critical(scheme_implicit)%omega)
+         associate (omega => simulation%critical(scheme_implicit)%omega)
+            if (stable > 0.0_wp .and. stable < sqrt(huge(stable)) .and. omega > 0.0_wp) then
+               limits(2) = min(limits(2), stable_share*stable/omega)
+            end if
+         end associate
          limits(1) = min(limits(1), limits(2))
       end associate
+      ! the other methods find impacts at the ends of increments only
+      if (simulation%scene%rows%n > 0 .and. simulation%scene%settings%method &
+            /= method_transformation) then
+         self%order = 1.0_wp
+      end if
       call set_sizes(self)
    end subroutine begin_plan
 
@@ -168,8 +177,9 @@ contains
       self%last = trial
       if (self%base%n == 0 .and. trial%difference <= large_error) self%base = trial
       self%size = trial%size
-      self%ready = estimate <= max(nothing, min(round_off, 0.1_wp*self%asked)) .or. forced .or. self%n_rehearsals >= most_rehearsals
-      self%ready = self%ready .or. (estimate <= self%asked .and. estimate >= enough*self%asked)
+      self%ready = estimate <= max(nothing, min(round_off, 0.1_wp*self%asked)) .or. forced .or. &
+            self%n_rehearsals >= most_rehearsals .or. &
+            (estimate <= self%asked .and. estimate >= enough*self%asked)
       if (self%ready) return
       target = trial%size*(aim*self%asked/estimate)**(1.0_wp/self%order)
       if (.not. self%given) target = max(target, default_least)
@@ -250,10 +260,11 @@ contains
       call say(log, 'step '//to_text(i_step)//': '//plural(twins%n, 'automatic increment')//', ' &
             //to_text(twins%ladder%n_changes)//' changes of size, ' &
             //plural(plan%n_rehearsals, 'rehearsal')//' before')
-      call say(log, '  estimated error '//to_text(estimate, 3)//' of the largest displacement, asked ' &
-            //to_text(plan%asked, 3))
-      if (estimate > plan%asked) call say(log, 'warning: step '//to_text(i_step) &
-            //' is probably less accurate than asked')
+      call say(log, '  estimated error '//to_text(estimate, 3) &
+            //' of the largest displacement, asked '//to_text(plan%asked, 3))
+      if (estimate > plan%asked) then
+         call say(log, 'warning: step '//to_text(i_step)//' is probably less accurate than asked')
+      end if
    end subroutine report_tolerance
 
 end module rehearsal

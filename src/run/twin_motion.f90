@@ -174,8 +174,9 @@ contains
          ratio = weight*dt**2*maxval(abs(to%a - from%a))/(self%settings%local_tolerance*scale)
          if (ratio < round_off/self%settings%local_tolerance) ratio = 0.0_wp
       end associate
-      if (simulation%scene%n_events > self%coarse%n_events .and. dt <= self%proven) &
-            ratio = min(ratio, 1.0_wp)
+      if (simulation%scene%n_events > self%coarse%n_events .and. dt <= self%proven) then
+         ratio = min(ratio, 1.0_wp)
+      end if
    end function local_error
 
    !> After an increment of the fine motion: how far the motions are apart where they meet.
