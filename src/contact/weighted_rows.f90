@@ -188,7 +188,7 @@ contains
          terms(:, k) = -shape(k)*across
       end do
       terms(:, edge%n + 1) = across
-      terms = side*norm2(along)/speed*terms
+      terms(:, :edge%n + 1) = side*norm2(along)/speed*terms(:, :edge%n + 1)
       do j = 1, edge%n
          call add_terms(sums, place(edge%nodes(j)), [edge%nodes(:edge%n), node], &
                weights(j)*terms(:, :edge%n + 1), gap)

@@ -123,7 +123,7 @@ contains
    function residual(self, fixed, history, trial) result(psi)
       type(system_type), intent(inout) :: self
       real(wp), intent(in) :: fixed(:)           !! from `fixed_force`
-      real(wp), intent(in) :: history(:)         !! at the start of the step
+      real(wp), intent(in), contiguous :: history(:)   !! at the start of the step
       type(state_type), intent(inout) :: trial   !! gets the history of implicit elements
       real(wp) :: psi(size(fixed))
 
