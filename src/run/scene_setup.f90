@@ -8,8 +8,8 @@ module scene_setup
    use model, only: model_type
    use mesh, only: scheme_implicit, scheme_explicit
    use steps, only: step_type, procedure_static, procedure_dynamic, procedure_frequency
-   use histories, only: boundary_type, nodal_value_type
-   use structure, only: structure_type, new_structure, diagonal_mass
+   use histories, only: boundary_type, nodal_value_type, motion_acceleration
+   use structure, only: structure_type, new_structure, diagonal_mass, inertia_force
    use equation_order, only: ordering_type, order_equations
    use external_load, only: begin_loads
    use prescribed_motion, only: begin_motions, start_motions, prescribed_freedoms
@@ -247,6 +247,7 @@ contains
          if (allocated(error)) return
          call check_frequencies(self, step, error)
          if (allocated(error)) return
+         call note_driven_mass(self, step)
          call mark_massless_rows(self%model, self%contact, system, self%scene%rows, error)
          if (allocated(error)) return
          call check_method(self%model, self%scene%settings, step, system%newmark%beta, error)
@@ -351,6 +352,34 @@ contains
          end do
       end associate
    end subroutine find_massless
+
+   !> A displacement or velocity that goes from point to point of an amplitude has no acceleration
+   !> but jumps of the velocity, and what has consistent mass beside it does not feel those.
+   subroutine note_driven_mass(self, step)
+      type(simulation_type), intent(inout) :: self
+      type(step_type), intent(in) :: step
+      real(wp), dimension(self%scene%system%structure%map%n_freedoms) :: driven, inertia
+      integer :: i, first
+
+      if (.not. self%scene%system%structure%has_consistent_mass) return
+      first = 0
+      driven = 0.0_wp
+      associate (map => self%scene%system%structure%map, boundaries => step%boundaries)
+         do i = size(boundaries), 1, -1
+            if (boundaries(i)%amplitude == 0 .or. boundaries(i)%motion == motion_acceleration) cycle
+            if (map%freedom(boundaries(i)%dof, boundaries(i)%node) == 0) cycle
+            driven(map%freedom(boundaries(i)%dof, boundaries(i)%node)) = 1.0_wp
+            first = i
+         end do
+         if (first == 0) return
+         inertia = inertia_force(self%scene%system%structure, driven)
+         if (.not. any(abs(inertia) > 0.0_wp .and. .not. map%prescribed)) return
+         call add_remark(self, note_at(self%model%source, boundaries(first)%place, 'warning: ' &
+               //'displacements or velocities driven by an amplitude have no acceleration, and ' &
+               //'their neighbours with consistent mass miss its inertia'//new_line('a') &
+               //'  cure: TYPE=ACCELERATION, or MASS=LUMPED'))
+      end associate
+   end subroutine note_driven_mass
 
    !> Highest frequencies of the step, and whether its length is within what they allow.
    subroutine check_frequencies(self, step, error)

@@ -197,6 +197,47 @@ def check_base(checks):
             checks.close(run['history/node_2/U1'][-1], 3.0 * area, 1e-14, 'base displacement')
 
 
+DRIVEN = """*NODE
+1, 0, 0
+2, 1, 0
+3, 2, 0
+*ELEMENT, TYPE=MASS, ELSET=mass
+1, 1
+2, 2
+3, 3
+*ELEMENT, TYPE=T2D2, ELSET=bar
+4, 1, 2
+5, 2, 3
+*MASS, ELSET=mass
+1.5
+*MATERIAL, NAME=soft
+*ELASTIC
+40, 0
+*DENSITY
+2
+*SOLID SECTION, ELSET=bar, MATERIAL=soft
+1
+*ELEMENT GROUP, ELSET=bar, SCHEME=IMPLICIT, MASS=<mass>
+*AMPLITUDE, NAME=push
+0, 0, 0.372, 1, 0.9, -0.5, 1.213, 0.2
+"""
+
+
+def check_driven_mass(checks):
+    """A node with mass is driven, its velocity jumps inside increments: the work of that is booked.
+    Neighbours with consistent mass do not feel the jumps, of which the log warns."""
+    for kind in ('DISPLACEMENT', 'VELOCITY', 'ACCELERATION'):
+        push = f'*BOUNDARY, TYPE={kind}, AMPLITUDE=push\n1, 1, 1, 0.1\n'
+        text = DRIVEN + step('DYNAMIC, DIRECT', 0.01, 2, push)
+        run = run_deck(text.replace('<mass>', 'LUMPED'))
+        checks.at_most(balance(run), 1e-13, f'mass driven by {kind}: balance error')
+        checks.at_least(np.max(run['energy/external_work']), 1e-3, f'mass driven by {kind}: work')
+        for mass, warned in (('LUMPED', False), ('CONSISTENT', kind != 'ACCELERATION')):
+            log = run_deck(text.replace('<mass>', mass)).path.with_suffix('.log').read_text()
+            checks.true(('miss its inertia' in log) == warned,
+                        f'{mass}, driven by {kind}: warning {warned}')
+
+
 def check_base_motion(checks):
     """Ground acceleration sin(3 t) in points 0.001 apart, omega = 2, relative displacement."""
     t = np.linspace(0.0, 4.0, 4001)
@@ -366,6 +407,7 @@ check_preload(checks)
 check_static_contact(checks)
 check_one_or_two(checks)
 check_base(checks)
+check_driven_mass(checks)
 check_base_motion(checks)
 check_equation(checks)
 check_nonlinear(checks)
