@@ -1,4 +1,4 @@
-# What demo.sh, test.sh and .ci/ share: packages, the Python environment, the build. To be sourced
+# What demo.sh, report.sh, test.sh and .ci/ share: packages, the Python environment, the build. To be sourced
 # with $root set to the top of the checkout. Everything it writes stays in there.
 
 build="$root/build"
@@ -150,4 +150,13 @@ configure_and_build() {
       cat "$scratch/build.log" >&2
       fail 'the build failed'
    }
+}
+
+# Builds the program alone, with the Python environment of the scripts, and goes to the top
+prepare_program() {
+   prepare_environment
+   install_packages
+   make_environment "$root/scripts/requirements.txt"
+   configure_and_build "$build" carom -DCMAKE_BUILD_TYPE=Release
+   cd "$root"
 }

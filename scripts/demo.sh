@@ -5,11 +5,7 @@ set -eu
 root=$(cd "$(dirname "$0")/.." && pwd -P)
 . "$root/scripts/common.sh"
 
-prepare_environment
-install_packages
-make_environment "$root/scripts/requirements.txt"
-configure_and_build "$build" carom -DCMAKE_BUILD_TYPE=Release
-cd "$root"
+prepare_program
 mkdir -p demo
 
 compute() {

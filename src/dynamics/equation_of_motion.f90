@@ -22,7 +22,7 @@ module equation_of_motion
    public :: predict_motion, start_near, fixed_force, residual, solve_motion, prepare_motion
    public :: prepare_mass, solve_mass, solve_together, force_balance, impose
    public :: settle_massless
-   public :: rigid_mass, count_updates, resist
+   public :: rigid_mass, count_updates, resist, mark_type, begin_matrix, end_matrix
 
    !> A structure under the loads and conditions of a step, with its matrices.
    type :: system_type
@@ -40,6 +40,14 @@ module equation_of_motion
       logical, allocatable :: massless(:)        !! (n_eq) equations without mass
       real(wp) :: omega_max(2) = 0.0_wp          !! bound on the implicit, explicit frequencies
    end type system_type
+
+   !> Costs before a matrix is made.
+   type :: mark_type
+      private
+      real(wp) :: seconds = 0.0_wp
+      integer(int64) :: n_assembled = 0
+      integer :: outer = 0
+   end type mark_type
 
 contains
 
@@ -235,19 +243,33 @@ contains
       type(profile_type), intent(in) :: profile
       real(wp), intent(in) :: d(:), history(:), factors(3)
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: seconds
-      integer(int64) :: n_assembled
-      integer :: outer
+      type(mark_type) :: mark
 
-      call enter(self%cost, phase_elements, outer)
-      seconds = self%matrices%factor_seconds
-      n_assembled = self%matrices%n_assembled
+      call begin_matrix(self, mark)
       call self%matrices%prepare(self%structure, profile, d, history, factors, error)
-      call charge(self%cost, phase_factor, self%matrices%factor_seconds - seconds)
-      self%cost%element_updates = self%cost%element_updates + self%matrices%n_assembled &
-            - n_assembled
-      call leave(self%cost, outer)
+      call end_matrix(self, mark)
    end subroutine prepare
+
+   !> Before a matrix is assembled and factorized: marks the costs so far.
+   subroutine begin_matrix(self, mark)
+      type(system_type), intent(inout) :: self
+      type(mark_type), intent(out) :: mark
+
+      call enter(self%cost, phase_elements, mark%outer)
+      mark%seconds = self%matrices%factor_seconds
+      mark%n_assembled = self%matrices%n_assembled
+   end subroutine begin_matrix
+
+   !> After it: books the factorization and the elements.
+   subroutine end_matrix(self, mark)
+      type(system_type), intent(inout) :: self
+      type(mark_type), intent(in) :: mark
+
+      call charge(self%cost, phase_factor, self%matrices%factor_seconds - mark%seconds)
+      self%cost%element_updates = self%cost%element_updates + self%matrices%n_assembled &
+            - mark%n_assembled
+      call leave(self%cost, mark%outer)
+   end subroutine end_matrix
 
    !> Motion of the freedoms (acceleration, or displacement in a static step) under forces on them,
    !> with the matrix last prepared.

@@ -8,16 +8,16 @@
 !>
 !> f joins the loads at both Gauss points. It conserves the energy of every free motion, whatever h.
 module gauss_step
-   use kinds, only: wp, int64
+   use kinds, only: wp
    use errors, only: error_type
-   use cost_account, only: enter, leave, charge, phase_elements, phase_factor, phase_solve
+   use cost_account, only: enter, leave, phase_solve
    use mesh, only: scheme_implicit
    use dof_map, only: reduce, expand, follow_constraints
    use structure, only: damping_force, inertia_force
    use external_load, only: load_at
    use prescribed_motion, only: impose_motion
    use motion_state, only: state_type
-   use equation_of_motion, only: system_type, impose, resist
+   use equation_of_motion, only: system_type, impose, resist, mark_type, begin_matrix, end_matrix
    use gauss_matrices, only: prepare_gauss, solve_gauss
    use reactions, only: reaction_forces
    implicit none
@@ -116,19 +116,12 @@ contains
       real(wp), intent(in) :: dt
       logical, intent(in) :: whole
       type(error_type), allocatable, intent(out) :: error
-      real(wp) :: seconds
-      integer(int64) :: n_assembled
-      integer :: outer
+      type(mark_type) :: mark
 
-      call enter(system%cost, phase_elements, outer)
-      seconds = system%matrices%factor_seconds
-      n_assembled = system%matrices%n_assembled
+      call begin_matrix(system, mark)
       call prepare_gauss(system%gauss, system%matrices, system%structure, system%profile, rate/dt, &
             dt, whole, error)
-      call charge(system%cost, phase_factor, system%matrices%factor_seconds - seconds)
-      system%cost%element_updates = system%cost%element_updates + system%matrices%n_assembled &
-            - n_assembled
-      call leave(system%cost, outer)
+      call end_matrix(system, mark)
    end subroutine prepare
 
    !> K d + C v + M a.
