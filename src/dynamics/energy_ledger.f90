@@ -77,10 +77,10 @@ contains
       call record_reactions(self, system, from, to, contact_from, contact_to)
    end subroutine record_span
 
-   !> Work of the reactions where a freedom is moved. That of the inertia among them is taken from the
-   !> change of the velocities: where the velocity of a moved freedom jumps, as at the points of an
-   !> amplitude, no acceleration tells of it. In smooth motion both are the same by Newmark's rule
-   !> with beta = 1/4, gamma = 1/2.
+   !> Work of the reactions where a freedom is moved. That of the inertia among them is taken from
+   !> the change of the velocities: where the velocity of a moved freedom jumps, as at the points of
+   !> an amplitude, no acceleration tells of it. In smooth motion both are the same by Newmark's
+   !> rule with beta = 1/4, gamma = 1/2.
    subroutine record_reactions(self, system, from, to, contact_from, contact_to)
       type(ledger_type), intent(inout) :: self
       type(system_type), intent(inout) :: system
