@@ -6,7 +6,7 @@ module memory_estimate
    use memory_use, only: resident_memory
    use skyline_matrix, only: profile_type, profile_entries
    use panel_layout, only: panel_layout_type, new_panel_layout
-   use steps, only: step_type, procedure_static, solver_mumps
+   use steps, only: step_type, procedure_static, procedure_dynamic, solver_mumps
    use surfaces, only: method_transformation, method_penalty
    use effective_system, only: most_kept
    use compliance_store, only: most_entries
@@ -38,6 +38,10 @@ module memory_estimate
       procedure :: total
    end type memory_type
 
+   !> States that automatic increments of a motion keep: that of the coarse motion, those to be put
+   !> back, that at the start of the step.
+   real(wp), parameter :: n_states_kept = 6.0_wp
+
 contains
 
    !> All but the matrices, which depend on the step.
@@ -54,6 +58,11 @@ contains
       ! d, v, a, the forces beside them, of two states and the work between them
       self%items(item_state) = real_bytes*((10.0_wp + n_beside(simulation))*n_freedoms &
             + 3.0_wp*n_history)
+      associate (steps => simulation%model%steps)
+         if (any(steps%procedure == procedure_dynamic .and. .not. steps%direct)) &
+               self%items(item_state) = self%items(item_state) &
+               + real_bytes*n_states_kept*(4.0_wp*n_freedoms + n_history)
+      end associate
       self%items(item_contact) = real_bytes*contact_entries(simulation)
       call add_output(self, simulation)
    end subroutine estimate_memory
