@@ -59,9 +59,10 @@ contains
       self%items(item_state) = real_bytes*((10.0_wp + n_beside(simulation))*n_freedoms &
             + 3.0_wp*n_history)
       associate (steps => simulation%model%steps)
-         if (any(steps%procedure == procedure_dynamic .and. .not. steps%direct)) &
-               self%items(item_state) = self%items(item_state) &
-               + real_bytes*n_states_kept*(4.0_wp*n_freedoms + n_history)
+         if (any(steps%procedure == procedure_dynamic .and. .not. steps%direct)) then
+            self%items(item_state) = self%items(item_state) &
+                  + real_bytes*n_states_kept*(4.0_wp*n_freedoms + n_history)
+         end if
       end associate
       self%items(item_contact) = real_bytes*contact_entries(simulation)
       call add_output(self, simulation)
