@@ -3,7 +3,7 @@ module external_load
    use kinds, only: wp
    use histories, only: amplitude_type, time_step, distributed_load_type, load_pressure, &
          load_body, load_centrifugal
-   use amplitude_value, only: amplitude_at, next_corner
+   use amplitude_value, only: amplitude_at, amplitude_start, corner_after
    use model, only: model_type
    use steps, only: step_type, procedure_static
    use structure, only: structure_type, inertia_force
@@ -364,12 +364,8 @@ contains
       corner = huge(corner)
       do i = 1, size(self%loads)
          associate (load => self%loads(i))
-            if (.not. load%has_amplitude) cycle
-            if (load%amplitude%time == time_step) then
-               corner = min(corner, load%t_start + next_corner(load%amplitude%t, t - load%t_start))
-            else
-               corner = min(corner, next_corner(load%amplitude%t, t))
-            end if
+            if (load%has_amplitude) corner = min(corner, &
+                  corner_after(load%amplitude, load%t_start, t))
          end associate
       end do
    end function next_load_corner
@@ -379,16 +375,14 @@ contains
       type(load_type), intent(in) :: load
       real(wp), intent(in) :: t
       real(wp) :: weight(2)
-      real(wp) :: local_time
 
       weight = [0.0_wp, 1.0_wp]
       if (load%ramped) then
          weight(2) = (t - load%t_start)/load%duration
          weight(1) = 1.0_wp - weight(2)
       else if (load%has_amplitude) then
-         local_time = t
-         if (load%amplitude%time == time_step) local_time = t - load%t_start
-         weight(2) = amplitude_at(load%amplitude, local_time)
+         weight(2) = amplitude_at(load%amplitude, t - amplitude_start(load%amplitude, &
+               load%t_start))
       end if
    end function weights
 

@@ -4,7 +4,7 @@ module prescribed_motion
    use histories, only: amplitude_type, boundary_type, time_step, &
          motion_displacement, motion_velocity
    use amplitude_value, only: amplitude_at, amplitude_slope, amplitude_integral, &
-         amplitude_second_integral, next_corner
+         amplitude_second_integral, amplitude_start, corner_after
    implicit none
    private
 
@@ -182,13 +182,8 @@ contains
       corner = huge(corner)
       do i = 1, size(self%motions)
          associate (motion => self%motions(i))
-            if (.not. motion%has_amplitude) cycle
-            if (motion%amplitude%time == time_step) then
-               corner = min(corner, motion%t_start &
-                     + next_corner(motion%amplitude%t, t - motion%t_start))
-            else
-               corner = min(corner, next_corner(motion%amplitude%t, t))
-            end if
+            if (motion%has_amplitude) corner = min(corner, &
+                  corner_after(motion%amplitude, motion%t_start, t))
          end associate
       end do
    end function next_motion_corner
@@ -228,12 +223,10 @@ contains
       real(wp) :: factor(4)
       real(wp) :: from, to, first
 
-      from = motion%t_start
-      to = t
-      if (motion%amplitude%time == time_step) then
-         from = 0.0_wp
-         to = t - motion%t_start
-      end if
+      associate (start => amplitude_start(motion%amplitude, motion%t_start))
+         from = motion%t_start - start
+         to = t - start
+      end associate
       first = amplitude_integral(motion%amplitude, from)
       factor(1) = amplitude_second_integral(motion%amplitude, to) &
             - amplitude_second_integral(motion%amplitude, from) - first*(to - from)

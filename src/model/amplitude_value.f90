@@ -1,12 +1,12 @@
 !> Value, slope and time integrals of an amplitude: exact, since it is piecewise linear.
 module amplitude_value
    use kinds, only: wp
-   use histories, only: amplitude_type
+   use histories, only: amplitude_type, time_step
    implicit none
    private
 
    public :: amplitude_at, amplitude_slope, amplitude_integral, amplitude_second_integral
-   public :: next_corner
+   public :: corner_after, amplitude_start
 
 contains
 
@@ -76,6 +76,27 @@ contains
          from = to
       end do
    end subroutine integrate
+
+   !> The total time from which an amplitude counts its own.
+   pure function amplitude_start(amplitude, t_start) result(start)
+      type(amplitude_type), intent(in) :: amplitude
+      real(wp), intent(in) :: t_start   !! of the step
+      real(wp) :: start
+
+      start = merge(t_start, 0.0_wp, amplitude%time == time_step)
+   end function amplitude_start
+
+   !> The first total time after t at which an amplitude has a corner, huge if there is none.
+   pure function corner_after(amplitude, t_start, t) result(corner)
+      type(amplitude_type), intent(in) :: amplitude
+      real(wp), intent(in) :: t_start   !! of the step
+      real(wp), intent(in) :: t
+      real(wp) :: corner
+
+      associate (start => amplitude_start(amplitude, t_start))
+         corner = start + next_corner(amplitude%t, t - start)
+      end associate
+   end function corner_after
 
    !> The first of the times after t, huge if there is none.
    pure function next_corner(times, t) result(next)

@@ -1,7 +1,8 @@
 !> Times at which the tables of loads, prescribed motions and moving walls have their points.
 module amplitude_breaks
    use kinds, only: wp
-   use histories, only: amplitude_type, time_step
+   use histories, only: amplitude_type
+   use amplitude_value, only: amplitude_start
    use scene_setup, only: simulation_type
    implicit none
    private
@@ -51,8 +52,7 @@ contains
       n = 0
       k = 1
       do i = 1, size(amplitude%t)
-         t = amplitude%t(i)
-         if (amplitude%time == time_step) t = t + t_start
+         t = amplitude_start(amplitude, t_start) + amplitude%t(i)
          if (t <= span(1) + apart .or. t >= span(2) - apart) cycle
          do while (k <= size(breaks))
             if (breaks(k) > t) exit
