@@ -11,7 +11,7 @@ module energy_ledger
    use motion_state, only: state_type
    use cost_account, only: enter, leave, phase_elements
    use equation_of_motion, only: system_type
-   use reactions, only: reaction_forces, impulse_reactions
+   use reactions, only: resisting_reactions, impulse_reactions
    implicit none
    private
 
@@ -87,18 +87,13 @@ contains
       type(state_type), intent(in) :: from, to
       real(wp), intent(in) :: contact_from(:), contact_to(:)
       real(wp), dimension(size(from%d)) :: moved, before, after, none
-      type(state_type) :: slow
 
       moved = merge(to%d - from%d, 0.0_wp, system%structure%map%prescribed)
       if (.not. any(abs(moved) > 0.0_wp .or. (system%structure%map%prescribed .and. &
             abs(from%v + to%v) > 0.0_wp))) return
       none = 0.0_wp
-      slow = from
-      slow%a = 0.0_wp
-      before = reaction_forces(system, slow, contact_from)
-      slow = to
-      slow%a = 0.0_wp
-      after = reaction_forces(system, slow, contact_to)
+      before = resisting_reactions(system, from, contact_from)
+      after = resisting_reactions(system, to, contact_to)
       self%external_work = self%external_work + dot_product(moved, before + after)/2.0_wp
       if (system%static) return
       self%external_work = self%external_work + dot_product(from%v + to%v, &

@@ -7,7 +7,7 @@ module reactions
    implicit none
    private
 
-   public :: reaction_forces, impulse_reactions
+   public :: reaction_forces, resisting_reactions, impulse_reactions
 
 contains
 
@@ -23,6 +23,17 @@ contains
       if (.not. system%static) reaction = reaction + inertia_force(system%structure, state%a)
       call keep_prescribed(system, reaction)
    end function reaction_forces
+
+   !> The same without the inertia.
+   function resisting_reactions(system, state, contact) result(reaction)
+      type(system_type), intent(inout) :: system
+      type(state_type), intent(in) :: state
+      real(wp), intent(in) :: contact(:)         !! (n_freedoms) contact forces
+      real(wp) :: reaction(size(contact))
+
+      reaction = -force_balance(system, state) - contact
+      call keep_prescribed(system, reaction)
+   end function resisting_reactions
 
    !> The same of an impact: M (v+ - v-) - contact impulses at prescribed freedoms, zero elsewhere.
    function impulse_reactions(system, change, contact) result(reaction)
