@@ -5,6 +5,7 @@ module structure
    use errors, only: error_type
    use text, only: to_text
    use places, only: fail_at
+   use mesh, only: scheme_implicit, scheme_explicit
    use model, only: model_type
    use element_groups, only: group_type, build_groups, group_mass
    use needed_freedoms, only: find_needed_freedoms
@@ -19,7 +20,7 @@ module structure
    public :: structure_type, new_structure
    public :: elastic_force, damping_force, inertia_force, gather
    public :: group_history, freedom_name, diagonal_mass, least_mass
-   public :: count_resisting
+   public :: count_resisting, is_explicit
 
    !> Everything that does not change from step to step, and the numbering that may.
    type :: structure_type
@@ -92,6 +93,14 @@ contains
          n = n + size(self%groups(g)%member)
       end do
    end function count_resisting
+
+   !> Whether nothing that resists is implicit.
+   pure logical function is_explicit(self)
+      type(structure_type), intent(in) :: self
+
+      is_explicit = any(self%groups%scheme == scheme_explicit) .and. &
+            count_resisting(self, scheme_implicit) == 0
+   end function is_explicit
 
    !> The lm array: freedoms of every element of a group.
    subroutine locate(group, map)

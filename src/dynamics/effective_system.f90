@@ -13,8 +13,7 @@ module effective_system
    use sparse_matrix, only: pattern_type, sparse_report_type, is_same, diagonal_places
    use mumps_solver, only: mumps_type, mumps_available, analyse, discard, &
          factorize_sparse => factorize, solve_sparse => solve
-   use mesh, only: scheme_implicit
-   use structure, only: structure_type, freedom_name, count_resisting
+   use structure, only: structure_type, freedom_name, is_explicit
    use effective_matrix, only: assemble_effective, assemble_sum, count_coupled, count_parts
    use sparse_effective, only: find_pattern, assemble_sparse, fill_empty_diagonal
    use solver_choice, only: work_type, choice_type, first_choice, refine_choice
@@ -111,9 +110,7 @@ contains
       type(pattern_type) :: pattern
 
       call self%forget()
-      self%counts_solves = profile_entries(profile) > profile%n .or. &
-            count_resisting(structure, scheme_implicit) > 0 .or. &
-            all(structure%groups%scheme == scheme_implicit)
+      self%counts_solves = profile_entries(profile) > profile%n .or. .not. is_explicit(structure)
       call first_choice(self%choice, profile, work, mumps_available())
       if (self%choice%open) then
          call find_pattern(structure, pattern)

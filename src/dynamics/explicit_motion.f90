@@ -4,7 +4,7 @@
 module explicit_motion
    use kinds, only: wp
    use mesh, only: scheme_implicit, scheme_explicit
-   use structure, only: elastic_force, damping_force
+   use structure, only: elastic_force, damping_force, count_resisting
    use external_load, only: load_at
    use prescribed_motion, only: are_at_rest
    use motion_state, only: state_type, exchange
@@ -68,7 +68,6 @@ contains
    function is_explicit(system) result(explicit)
       type(system_type), intent(in) :: system
       logical :: explicit
-      integer :: g
 
       explicit = .false.
       if (system%static .or. system%newmark%beta > 0.0_wp) return
@@ -76,12 +75,7 @@ contains
       if (system%structure%has_consistent_mass) return
       if (size(system%structure%map%dependent) > 0) return
       if (any(system%massless)) return
-      do g = 1, size(system%structure%groups)
-         associate (group => system%structure%groups(g))
-            if (group%scheme == scheme_implicit .and. any(group%element%uses(1))) return
-         end associate
-      end do
-      explicit = .true.
+      explicit = count_resisting(system%structure, scheme_implicit) == 0
    end function is_explicit
 
    !> One increment. d1 = d + h v + h^2/2 a,  v~ = v + h (1 - gamma) a,

@@ -1,14 +1,14 @@
 !> What the forces and matrices of elements take of an increment, by counting their numbers.
 module element_cost
    use kinds, only: wp
-   use mesh, only: scheme_implicit, scheme_explicit
+   use mesh, only: scheme_implicit
    use element_groups, only: group_type
    use structure, only: structure_type
    use steps, only: step_type
    implicit none
    private
 
-   public :: is_explicit, group_seconds, force_seconds
+   public :: group_seconds, pass_seconds
 
    !> Seconds on a processor of today, each found by a run that does little else.
    real(wp), parameter :: matrix_number = 0.35e-9_wp     !! of an element matrix, in a force
@@ -20,16 +20,6 @@ module element_cost
    real(wp), parameter, public :: iterations = 3.0_wp
 
 contains
-
-   !> Whether nothing that resists is implicit.
-   pure logical function is_explicit(structure)
-      type(structure_type), intent(in) :: structure
-
-      associate (groups => structure%groups)
-         is_explicit = any(groups%scheme == scheme_explicit) .and. .not. &
-               any(groups%scheme == scheme_implicit .and. groups%resists)
-      end associate
-   end function is_explicit
 
    !> Forces once an increment of a linear structure; of another twice an iteration, and the tangent
    !> of implicit elements. HHT needs the forces at the start too, ORDER=4 those of two stages.
@@ -56,6 +46,18 @@ contains
       if (size(group%damping) > 0) seconds = seconds + (n_forces + 1.0_wp)*matrix_number*n_numbers
       seconds = seconds*real(size(group%member), wp)
    end function group_seconds
+
+   !> The forces of all elements once.
+   pure real(wp) function pass_seconds(structure) result(seconds)
+      type(structure_type), intent(in) :: structure
+      integer :: g
+
+      seconds = 0.0_wp
+      do g = 1, size(structure%groups)
+         if (structure%groups(g)%resists) seconds = seconds + force_seconds(structure%groups(g)) &
+               *real(size(structure%groups(g)%member), wp)
+      end do
+   end function pass_seconds
 
    !> The force of one element.
    pure real(wp) function force_seconds(group)

@@ -14,7 +14,8 @@ module scene_features
    use prescribed_motion, only: are_at_rest
    use scene_setup, only: simulation_type
    use increment_count, only: count_increments
-   use element_cost, only: iterations, is_explicit, group_seconds, force_seconds
+   use structure, only: is_explicit
+   use element_cost, only: iterations, group_seconds, pass_seconds
    use memory_estimate, only: memory_type, item_frames, item_rows, item_contact, item_matrices
    use output_cost, only: output_cost_type, new_output_cost, bytes_text
    implicit none
@@ -238,7 +239,7 @@ contains
       type(simulation_type), intent(in) :: simulation
       character(len=:), allocatable :: text
       real(wp) :: seconds
-      integer :: n_held, g
+      integer :: n_held
       logical :: at_rest
 
       associate (system => simulation%scene%system, state => simulation%motion%motion)
@@ -249,14 +250,7 @@ contains
             at_rest = are_at_rest(system%motions, state%d, state%v, state%a)
             text = ', '//plural(n_held, 'freedom')//trim(merge(' held           ', &
                   ' held or moving ', at_rest))
-            if (.not. at_rest) then
-               do g = 1, size(system%structure%groups)
-                  associate (group => system%structure%groups(g))
-                     if (group%resists) seconds = seconds &
-                           + 2.0_wp*force_seconds(group)*real(size(group%member), wp)
-                  end associate
-               end do
-            end if
+            if (.not. at_rest) seconds = 2.0_wp*pass_seconds(system%structure)
          end if
          if (size(system%structure%map%dependent) > 0) text = text//', ' &
                //plural(size(system%structure%map%dependent), 'linear constraint')
@@ -313,7 +307,6 @@ contains
       type(feature_list_type), intent(inout) :: self
       type(simulation_type), intent(in) :: simulation
       real(wp) :: seconds
-      integer :: g
 
       associate (output => self%output)
          if (output%n_columns > 0) call add(self, kind_history, 'history', &
@@ -324,13 +317,7 @@ contains
                //bytes_text(output%frame_bytes), output%frame_seconds*output%n_frames &
                /max(1.0_wp, self%increments))
          if (.not. output%energies) return
-         seconds = 0.0_wp
-         do g = 1, size(simulation%scene%system%structure%groups)
-            associate (group => simulation%scene%system%structure%groups(g))
-               if (group%resists) seconds = seconds &
-                     + energy_passes(simulation)*force_seconds(group)*real(size(group%member), wp)
-            end associate
-         end do
+         seconds = energy_passes(simulation)*pass_seconds(simulation%scene%system%structure)
          call add(self, kind_energies, 'energies', 'of the whole' &
                //several(size(simulation%scene%system%structure%groups)) &
                //every(output%energy_every), seconds/output%energy_every)
