@@ -15,7 +15,7 @@ module steps
    public :: request_contact_print, request_contact_file, request_energy_print
    public :: quantity_u, quantity_v, quantity_a, quantity_rf, quantity_s, quantity_e
    public :: quantity_ener, quantity_cf, quantity_cdis, quantity_peeq, n_quantities
-   public :: quantity_cpress, quantity_cslip, quantity_cstate
+   public :: quantity_cpress, quantity_cslip, quantity_cstate, quantity_names
 
    integer, parameter :: procedure_static = 1
    integer, parameter :: procedure_dynamic = 2
@@ -47,6 +47,9 @@ module steps
    integer, parameter :: quantity_cslip = 12
    integer, parameter :: quantity_cstate = 13
    integer, parameter :: n_quantities = 13
+   !> The names of their fields.
+   character(len=6), parameter :: quantity_names(n_quantities) = [character(len=6) :: 'U', 'V', &
+         'A', 'RF', 'S', 'E', 'ENER', 'CF', 'CDIS', 'PEEQ', 'CPRESS', 'CSLIP', 'CSTATE']
 
    !> One PRINT or FILE card.
    type :: request_type

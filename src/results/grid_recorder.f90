@@ -6,7 +6,8 @@ module grid_recorder
    use model, only: model_type
    use mesh, only: is_solid_kind, solid_topology
    use steps, only: quantity_u, quantity_v, quantity_a, quantity_rf, quantity_cf, &
-         quantity_cdis, quantity_cpress, quantity_cslip, quantity_cstate, n_quantities
+         quantity_cdis, quantity_cpress, quantity_cslip, quantity_cstate, quantity_names, &
+         n_quantities
    use contact_pairs, only: contact_pair_list_type
    use impact_scene, only: scene_type
    use hdf5_file, only: hdf5_file_type
@@ -37,8 +38,6 @@ module grid_recorder
    integer, parameter :: nodal(9) = [quantity_u, quantity_v, quantity_a, quantity_rf, quantity_cf, &
          quantity_cdis, quantity_cpress, quantity_cslip, quantity_cstate]
    integer, parameter :: n_components(9) = [3, 3, 3, 3, 3, 1, 1, 1, 1]
-   character(len=6), parameter :: names(9) = ['U     ', 'V     ', 'A     ', 'RF    ', 'CF    ', &
-         'CDIS  ', 'CPRESS', 'CSLIP ', 'CSTATE']
    character(len=83), parameter :: meanings(9) = [character(len=83) :: &
          'displacement', 'velocity', 'acceleration', 'reaction force', &
          'contact force, with friction', &
@@ -117,8 +116,8 @@ contains
       integer :: i
 
       i = findloc(nodal, q, dim=1)
-      call self%grid%add_point_field(file, trim(names(i)), n_components(i), trim(meanings(i)), &
-            self%field(q), error, partial=q == quantity_cdis)
+      call self%grid%add_point_field(file, trim(quantity_names(q)), n_components(i), &
+            trim(meanings(i)), self%field(q), error, partial=q == quantity_cdis)
    end subroutine add_field
 
    !> Appends a frame.

@@ -7,7 +7,7 @@ module history_recorder
    use model, only: model_type
    use steps, only: quantity_u, quantity_v, quantity_a, quantity_rf, quantity_s, quantity_e, &
          quantity_ener, quantity_cf, quantity_cdis, quantity_peeq, quantity_cpress, &
-         quantity_cslip, quantity_cstate, n_quantities
+         quantity_cslip, quantity_cstate, quantity_names, n_quantities
    use element_interface, only: n_recovered, recovered_stress, recovered_strain, recovered_peeq, &
          recovered_energy
    use contact_pairs, only: contact_pair_list_type
@@ -40,7 +40,6 @@ module history_recorder
       logical :: needs_reactions = .false.
    end type history_type
 
-   character(len=2), parameter :: names(4) = ['U ', 'V ', 'A ', 'RF']
    character(len=12), parameter :: meanings(4) = &
          ['displacement', 'velocity    ', 'acceleration', 'reaction    ']
 
@@ -97,9 +96,9 @@ contains
             do i = 1, 3
                f = scene%system%structure%map%freedom(i, node)
                if (f == 0) cycle
-               call add(self, file, column_type(q, f, 0, i), 'node_'//id//'/'//trim(names(q)) &
-                     //to_text(i), trim(meanings(q))//' of node '//id//' in direction ' &
-                     //to_text(i), error)
+               call add(self, file, column_type(q, f, 0, i), 'node_'//id//'/' &
+                     //trim(quantity_names(q))//to_text(i), trim(meanings(q))//' of node ' &
+                     //id//' in direction '//to_text(i), error)
                if (allocated(error)) return
             end do
          end do

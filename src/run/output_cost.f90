@@ -6,7 +6,7 @@ module output_cost
          request_node_file, request_element_file, request_contact_file, request_energy_print, &
          quantity_u, quantity_v, quantity_a, quantity_rf, quantity_s, quantity_e, quantity_ener, &
          quantity_peeq, quantity_cf, quantity_cdis, quantity_cpress, quantity_cslip, &
-         quantity_cstate, n_quantities
+         quantity_cstate, quantity_names, n_quantities
    use output_plan, only: plan_type, new_plan
    use scene_setup, only: simulation_type
    implicit none
@@ -20,9 +20,6 @@ module output_cost
    real(wp), parameter :: frame_byte = 2.0e-9_wp, row_value = 10.0e-9_wp, &
          state_freedom = 5.0e-9_wp, stress_point = 0.3e-6_wp
 
-   !> Names of the fields in the order of the quantity_ parameters.
-   character(len=6), parameter :: names(n_quantities) = [character(len=6) :: 'U', 'V', 'A', 'RF', &
-         'S', 'E', 'ENER', 'CF', 'CDIS', 'PEEQ', 'CPRESS', 'CSLIP', 'CSTATE']
    integer, parameter :: vectors(5) = [quantity_u, quantity_v, quantity_a, quantity_rf, quantity_cf]
    integer, parameter :: of_elements(4) = [quantity_s, quantity_e, quantity_ener, quantity_peeq]
    integer, parameter :: of_contact(4) = [quantity_cdis, quantity_cpress, quantity_cslip, &
@@ -133,7 +130,7 @@ contains
       wanted(quantity_u) = .true.
       self%fields = ''
       do q = 1, n_quantities
-         if (wanted(q)) self%fields = self%fields//' '//trim(names(q))
+         if (wanted(q)) self%fields = self%fields//' '//trim(quantity_names(q))
       end do
       self%fields = self%fields(2:)
       n_nodes = real(simulation%model%nodes%n, wp)
