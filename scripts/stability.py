@@ -21,7 +21,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from carom_results import ScriptError, run
+from carom_deck import find_carom
+from carom_results import run
 from stability_measures import (
     accepted_limit, measure_bar, measure_bouncing, measure_coupling, measure_floor,
     measure_impact_steps, measure_limits, measure_schemes, recurring,
@@ -29,7 +30,6 @@ from stability_measures import (
 from stability_pictures import draw_coupling, draw_impact_steps, draw_recurring, draw_steps
 from stability_theory import radius
 
-ROOT = Path(__file__).resolve().parents[1]
 EVERY = (1, 2, 5, 10)
 OWN = "1/4 in all steps (AUTO)"
 
@@ -195,11 +195,9 @@ def main():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--quick", action="store_true", help="few frequencies, no pictures")
     parser.add_argument("-o", "--output", default="stability", help="folder (default: stability)")
-    parser.add_argument("--carom", default=str(ROOT / "build" / "carom"), help="the program")
+    parser.add_argument("--carom", help="the program (default: build/carom)")
     arguments = parser.parse_args()
-    folder, carom = Path(arguments.output), Path(arguments.carom)
-    if not carom.exists():
-        raise ScriptError(f"no program '{carom}': build it, or name it with --carom")
+    folder, carom = Path(arguments.output), find_carom(arguments.carom)
     folder.mkdir(parents=True, exist_ok=True)
     with h5py.File(folder / "stability.h5", "w") as file:
         report = Report(file)

@@ -1,48 +1,61 @@
 """Decks that show how carom's own steps amplify motion, and how they are run. All have h = 1."""
 
-import os
 import subprocess
 import tempfile
-from contextlib import nullcontext
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 
 import numpy as np
 
+from carom_deck import number_text, run_deck
 from carom_results import Results, ScriptError
 
 
 class Outcome:
-    """A run that has ended: its status, the first line of its message, columns by path."""
+    """A run that has ended: its status, columns by path."""
 
-    def __init__(self, status, message, columns):
-        self.status, self.message, self.columns = status, message, columns
+    def __init__(self, status, columns):
+        self.status, self.columns = status, columns
 
     def __getitem__(self, name):
         return self.columns[name]
 
 
-def run_text(carom, text, columns=(), command="run"):
-    """Runs or checks a deck given as text; a run that stops with status 4 keeps its rows."""
+@contextmanager
+def deck_file(text):
+    """A file with a deck in a folder of its own, for a while."""
     with tempfile.TemporaryDirectory(prefix="carom_") as folder:
-        deck, result = Path(folder, "deck.inp"), Path(folder, "deck.h5")
+        deck = Path(folder, "deck.inp")
         deck.write_text(text)
-        words = [str(carom), command, str(deck)]
-        words += ["-o", str(result), "--quiet"] if command == "run" else []
-        done = subprocess.run(words, capture_output=True, text=True,
-                              env={**os.environ, "OPENBLAS_NUM_THREADS": "1"})
-        message = next((line for line in done.stderr.splitlines() if line.strip()), "")
-        if done.returncode not in ((0, 4) if command == "run" else (0, 2)):
-            raise ScriptError(f"{' '.join(words)} ended with status {done.returncode}: {message}")
+        yield deck
+
+
+def run_text(carom, text, columns=()):
+    """Runs a deck given as text; one that stops with status 4 keeps its rows."""
+    with deck_file(text) as deck:
+        result = deck.with_suffix(".h5")
+        done = run_deck(carom, deck, result)
+        if done.status not in (0, 4):
+            raise ScriptError(f"{carom} run ended with status {done.status}: {done.last_line}")
         values = {}
         with Results(result) if columns else nullcontext() as results:
             for path in columns:
                 values[path] = results.column(*path.rsplit("/", 1))
-        return Outcome(done.returncode, message, values)
+        return Outcome(done.status, values)
+
+
+def is_refused(carom, text):
+    """Whether `carom check` finds an error in a deck given as text."""
+    with deck_file(text) as deck:
+        done = subprocess.run([str(carom), "check", str(deck)], capture_output=True, check=False)
+        if done.returncode not in (0, 2):
+            raise ScriptError(f"{carom} check ended with status {done.returncode}")
+        return done.returncode == 2
 
 
 def number(value):
     """A number that the deck reads back exactly."""
-    return repr(float(value))
+    return number_text(float(value))
 
 
 def initial(kind, rows):

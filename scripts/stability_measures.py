@@ -4,7 +4,7 @@ import numpy as np
 
 from carom_results import ScriptError
 from stability_decks import (
-    bouncing, bouncing_bar, coupled_pairs, impact_in_step, oscillators, run_text,
+    bouncing, bouncing_bar, coupled_pairs, impact_in_step, is_refused, oscillators, run_text,
 )
 from stability_theory import SCHEMES, impact_step, newmark_part, radius
 
@@ -123,7 +123,7 @@ def refused_limit(carom, scheme):
     """The omega h from which `carom check` refuses an oscillator, by bisection."""
     def refused(omega):
         text = oscillators(scheme, [omega], [1.0], [0.0], 2)
-        return run_text(carom, text, command="check").status != 0
+        return is_refused(carom, text)
 
     limit = accepted_limit(scheme) if scheme.explicit else scheme.limit()
     if not np.isfinite(limit):
