@@ -1,5 +1,8 @@
 !> What the user asks on the command line.
 module command_line
+   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+   use kinds, only: wp
+   use text, only: upper_case
    use errors, only: error_type, new_error, status_usage
    use deck_reader, only: definition_type
    implicit none
@@ -23,6 +26,10 @@ module command_line
       type(definition_type), allocatable :: definitions(:)
       integer :: threads = 0                           !! 0: OMP_NUM_THREADS, else 1
       logical :: quiet = .false.
+      logical :: overwrite = .false.                   !! results that exist may be replaced
+      character(len=:), allocatable :: restart         !! results of an earlier run to go on from
+      real(wp) :: memory = 0.0_wp                      !! bytes the run may take, 0: the machine's
+      real(wp) :: time_limit = 0.0_wp                  !! seconds the run may take, 0: no limit
    end type command_type
 
 contains
@@ -35,6 +42,8 @@ contains
       text = 'carom '//version_text//': structural dynamics with impact'//nl//nl// &
             'usage: carom run DECK [-o OUT.h5] [--define NAME=VALUE]... [--threads N] [--quiet]' &
             //nl// &
+            '                      [--overwrite | --restart OLD.h5] [--memory SIZE]'//nl// &
+            '                      [--time-limit TIME]'//nl// &
             '       carom check DECK [--define NAME=VALUE]...'//nl// &
             '       carom --version | --help'//nl//nl// &
             '  run      computes the deck; writes OUT.h5, OUT.log and OUT.sta'//nl// &
@@ -42,7 +51,11 @@ contains
             '  check    reads the deck, builds the model and prints what a run would do'//nl// &
             '  --define overrides a *PARAMETER of the deck'//nl// &
             '  --threads threads to work with (default: OMP_NUM_THREADS, else 1)'//nl// &
-            '  --quiet  no progress on the terminal'//nl//nl// &
+            '  --quiet  no progress on the terminal'//nl// &
+            '  --overwrite  replaces results that exist'//nl// &
+            '  --restart  goes on from the state saved in OLD.h5'//nl// &
+            '  --memory  what the run may take, as 500M or 12G (default: the machine''s)'//nl// &
+            '  --time-limit  stops then with the state saved; seconds or HH:MM:SS'//nl//nl// &
             'exit status: 0 done, 1 usage, 2 deck, 3 file, 4 numerical, 5 interrupted, 6 internal'
    end function usage_text
 
@@ -85,7 +98,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       select case (word)
-      case ('-o', '--define', '--threads')
+      case ('-o', '--define', '--threads', '--restart', '--memory', '--time-limit')
          i = i + 1
          if (i > command_argument_count()) then
             call usage_error(error, word//' needs a value behind it')
@@ -94,8 +107,8 @@ contains
          call read_option(command, word, argument(i), error)
       case ('--quiet')
          command%quiet = .true.
-      case ('--restart')
-         call usage_error(error, '--restart is known but does not work yet')
+      case ('--overwrite')
+         command%overwrite = .true.
       case default
          if (word(1:min(1, len(word))) == '-' .or. len(word) == 0) then
             call usage_error(error, 'unknown option '''//word//'''')
@@ -117,6 +130,12 @@ contains
       select case (option)
       case ('-o')
          command%output = value
+      case ('--restart')
+         command%restart = value
+      case ('--memory')
+         call read_memory(value, command%memory, error)
+      case ('--time-limit')
+         call read_time(value, command%time_limit, error)
       case ('--define')
          split = index(value, '=')
          if (split < 2 .or. split == len(value)) then
@@ -134,6 +153,55 @@ contains
          call usage_error(error, '--threads '''//value//''' is not a positive integer')
       end select
    end subroutine read_option
+
+   !> A size in bytes, or with K, M, G or T behind it (powers of 1024).
+   subroutine read_memory(value, bytes, error)
+      character(len=*), intent(in) :: value
+      real(wp), intent(out) :: bytes
+      type(error_type), allocatable, intent(out) :: error
+      integer :: length, power
+
+      length = len(value)
+      power = index('KMGT', upper_case(value(max(1, length):)))
+      if (length == 0) power = 0
+      if (power > 0) length = length - 1
+      bytes = plain_number(value(:length))*1024.0_wp**power
+      if (.not. bytes > 0.0_wp) call usage_error(error, '--memory '''//value &
+            //''' is not a size such as 500M or 12G')
+   end subroutine read_memory
+
+   !> Seconds, or MM:SS, or HH:MM:SS.
+   subroutine read_time(value, seconds, error)
+      character(len=*), intent(in) :: value
+      real(wp), intent(out) :: seconds
+      type(error_type), allocatable, intent(out) :: error
+      integer :: first, colon, parts
+
+      seconds = 0.0_wp
+      first = 1
+      do parts = 1, 3
+         colon = index(value(first:), ':')
+         if (colon == 0) colon = len(value) - first + 2
+         seconds = 60.0_wp*seconds + plain_number(value(first:first + colon - 2))
+         first = first + colon
+         if (first > len(value)) exit
+      end do
+      if (.not. seconds > 0.0_wp .or. first <= len(value)) call usage_error(error, &
+            '--time-limit '''//value//''' is neither seconds nor HH:MM:SS')
+   end subroutine read_time
+
+   !> A decimal number without a sign and exponent; not a number (NaN) where it is none.
+   function plain_number(word) result(number)
+      character(len=*), intent(in) :: word
+      real(wp) :: number
+      integer :: status
+
+      number = ieee_value(number, ieee_quiet_nan)
+      if (len(word) == 0 .or. len(word) > 18) return
+      if (verify(word, '0123456789.') > 0 .or. verify(word, '.') == 0) return
+      read (word, *, iostat=status) number
+      if (status /= 0) number = ieee_value(number, ieee_quiet_nan)
+   end function plain_number
 
    !> Checks what belongs together and fills in the name of the result file.
    subroutine complete(command, error)
