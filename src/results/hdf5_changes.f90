@@ -1,15 +1,17 @@
-!> The calls to the HDF5 library that change what a file holds already: datasets overwritten, taken
-!> away, cut back to their first rows.
+!> Further calls to the HDF5 library: what a file holds, and changes of it. Datasets are overwritten,
+!> taken away, cut back to their first rows.
 module hdf5_changes
    use, intrinsic :: iso_c_binding, only: c_ptr
    use hdf5, only: h5dclose_f, h5dget_type_f, h5dopen_f, h5dset_extent_f, h5dwrite_f, h5f_acc_rdwr_f, &
          h5f_close_strong_f, h5fopen_f, h5ldelete_f, h5lexists_f, h5p_file_access_f, h5pclose_f, &
-         h5pcreate_f, h5pset_fclose_degree_f, h5tclose_f, h5tequal_f
+         h5pcreate_f, h5pset_fclose_degree_f, h5tclose_f, h5tequal_f, &
+         h5tget_size_f, size_t
    use hdf5_calls, only: get_dims, hid_t, hsize_t, shape_of, start_library, storage_type
    implicit none
    private
 
-   public :: open_to_change, has_object, remove_object, overwrite_dataset, cut_rows
+   public :: open_to_change, has_object, remove_object, overwrite_dataset, cut_rows, &
+         text_length
 
 contains
 
@@ -129,5 +131,24 @@ contains
       call h5dclose_f(dataset, status(3))
       failed = any(status < 0)
    end subroutine cut_rows
+
+   !> Characters of each text of a dataset, 0 where it cannot be read.
+   function text_length(file, path) result(length)
+      integer(hid_t), intent(in) :: file
+      character(len=*), intent(in) :: path
+      integer :: length
+      integer(hid_t) :: dataset, kind
+      integer(size_t) :: bytes
+      integer :: status(5)
+
+      length = 0
+      call h5dopen_f(file, path, dataset, status(1))
+      if (status(1) < 0) return
+      call h5dget_type_f(dataset, kind, status(2))
+      call h5tget_size_f(kind, bytes, status(3))
+      call h5tclose_f(kind, status(4))
+      call h5dclose_f(dataset, status(5))
+      if (all(status >= 0)) length = int(bytes)
+   end function text_length
 
 end module hdf5_changes
