@@ -2,35 +2,16 @@
 !> taken away, cut back to their first rows.
 module hdf5_changes
    use, intrinsic :: iso_c_binding, only: c_ptr
-   use hdf5, only: h5dclose_f, h5dget_type_f, h5dopen_f, h5dset_extent_f, h5dwrite_f, h5f_acc_rdwr_f, &
-         h5f_close_strong_f, h5fopen_f, h5ldelete_f, h5lexists_f, h5p_file_access_f, h5pclose_f, &
-         h5pcreate_f, h5pset_fclose_degree_f, h5tclose_f, h5tequal_f, &
-         h5tget_size_f, size_t
-   use hdf5_calls, only: get_dims, hid_t, hsize_t, shape_of, start_library, storage_type
+   use hdf5, only: h5dclose_f, h5dget_type_f, h5dopen_f, h5dset_extent_f, h5dwrite_f, h5ldelete_f, &
+         h5lexists_f, h5tclose_f, h5tequal_f, h5tget_size_f, size_t
+   use hdf5_calls, only: get_dims, hid_t, hsize_t, shape_of, storage_type
    implicit none
    private
 
-   public :: open_to_change, has_object, remove_object, overwrite_dataset, cut_rows, &
+   public :: has_object, remove_object, overwrite_dataset, cut_rows, &
          text_length
 
 contains
-
-   !> Opens an existing file for reading and writing.
-   subroutine open_to_change(path, file, failed)
-      character(len=*), intent(in) :: path
-      integer(hid_t), intent(out) :: file
-      logical, intent(out) :: failed
-      integer(hid_t) :: access
-      integer :: status(4)
-
-      file = -1
-      call start_library(status(1))
-      call h5pcreate_f(h5p_file_access_f, access, status(2))
-      call h5pset_fclose_degree_f(access, h5f_close_strong_f, status(3))
-      call h5fopen_f(path, h5f_acc_rdwr_f, file, status(4), access_prp=access)
-      failed = any(status < 0)
-      call h5pclose_f(access, status(1))
-   end subroutine open_to_change
 
    !> Whether there is a group or dataset; all groups on the way are looked for too.
    function has_object(file, path) result(exists)

@@ -9,7 +9,7 @@ module hdf5_file
    use hdf5_calls, only: append_block, byte_storage, chunks_type, close_storage, hsize_t, &
          integer_storage, long_storage, make_series, put_attribute, real_storage, storage_type, &
          text_storage
-   use hdf5_store, only: hdf5_store_type
+   use hdf5_output, only: hdf5_output_type
    use, intrinsic :: iso_fortran_env, only: int8
    use kinds, only: int64, wp
    implicit none
@@ -22,7 +22,7 @@ module hdf5_file
    integer, parameter :: series_integer = 2
 
    !> A file open for writing. It must be closed: nothing closes it by itself.
-   type, extends(hdf5_store_type) :: hdf5_file_type
+   type, extends(hdf5_output_type) :: hdf5_file_type
    contains
       procedure :: write_bytes
       procedure :: create_series
@@ -43,7 +43,7 @@ module hdf5_file
 contains
 
    subroutine write_reals(self, path, values, description, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path, description
       real(wp), intent(in), contiguous, target :: values(:)
       type(error_type), allocatable, intent(out) :: error
@@ -52,7 +52,7 @@ contains
    end subroutine write_reals
 
    subroutine write_real_table(self, path, values, description, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path, description
       real(wp), intent(in), contiguous, target :: values(:, :)
       type(error_type), allocatable, intent(out) :: error
@@ -61,7 +61,7 @@ contains
    end subroutine write_real_table
 
    subroutine write_integers(self, path, values, description, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path, description
       integer, intent(in) :: values(:)
       type(error_type), allocatable, intent(out) :: error
@@ -72,7 +72,7 @@ contains
    end subroutine write_integers
 
    subroutine write_integer_table(self, path, values, description, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path, description
       integer, intent(in) :: values(:, :)
       type(error_type), allocatable, intent(out) :: error
@@ -84,7 +84,7 @@ contains
 
    !> Integers 0 to 255, stored as unsigned 8 bit numbers.
    subroutine write_bytes(self, path, values, description, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path, description
       integer, intent(in) :: values(:)
       type(error_type), allocatable, intent(out) :: error   !! status_file
@@ -96,7 +96,7 @@ contains
 
    !> One text as a scalar of exactly its length.
    subroutine write_text(self, path, value, description, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path, value, description
       type(error_type), allocatable, intent(out) :: error
       character(kind=c_char), allocatable, target :: bytes(:)
@@ -109,7 +109,7 @@ contains
    end subroutine write_text
 
    subroutine write_texts(self, path, values, description, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path, values(:), description
       type(error_type), allocatable, intent(out) :: error
       character(kind=c_char), allocatable, target :: bytes(:)
@@ -122,7 +122,7 @@ contains
    end subroutine write_texts
 
    subroutine write_longs(self, path, values, description, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path, description
       integer(int64), intent(in), contiguous, target :: values(:)
       type(error_type), allocatable, intent(out) :: error
@@ -131,7 +131,7 @@ contains
    end subroutine write_longs
 
    subroutine overwrite_reals(self, path, values, description, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path, description
       real(wp), intent(in), contiguous, target :: values(:)
       type(error_type), allocatable, intent(out) :: error
@@ -141,7 +141,7 @@ contains
    end subroutine overwrite_reals
 
    subroutine overwrite_longs(self, path, values, description, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path, description
       integer(int64), intent(in), contiguous, target :: values(:)
       type(error_type), allocatable, intent(out) :: error
@@ -151,7 +151,7 @@ contains
    end subroutine overwrite_longs
 
    subroutine set_integer(self, object, name, value, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: object, name
       integer, intent(in) :: value
       type(error_type), allocatable, intent(out) :: error
@@ -161,11 +161,11 @@ contains
       number = value
       call put_attribute(self%id, object, name, integer_storage(), [integer(hsize_t) ::], &
             c_loc(number), failed)
-      if (failed) call self%fail(object//'@'//name, error)
+      if (failed) call self%write_failure(object//'@'//name, error)
    end subroutine set_integer
 
    subroutine set_integers(self, object, name, values, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: object, name
       integer, intent(in), contiguous, target :: values(:)
       type(error_type), allocatable, intent(out) :: error
@@ -173,11 +173,11 @@ contains
 
       call put_attribute(self%id, object, name, integer_storage(), shape(values, hsize_t), &
             c_loc(values), failed)
-      if (failed) call self%fail(object//'@'//name, error)
+      if (failed) call self%write_failure(object//'@'//name, error)
    end subroutine set_integers
 
    subroutine set_real(self, object, name, value, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: object, name
       real(wp), intent(in) :: value
       type(error_type), allocatable, intent(out) :: error
@@ -187,12 +187,12 @@ contains
       number = value
       call put_attribute(self%id, object, name, real_storage(), [integer(hsize_t) ::], &
             c_loc(number), failed)
-      if (failed) call self%fail(object//'@'//name, error)
+      if (failed) call self%write_failure(object//'@'//name, error)
    end subroutine set_real
 
    !> A text of exactly its length: nothing padded, nothing trimmed.
    subroutine set_text(self, object, name, value, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: object, name, value
       type(error_type), allocatable, intent(out) :: error
       character(kind=c_char), allocatable, target :: bytes(:)
@@ -204,12 +204,12 @@ contains
       call put_attribute(self%id, object, name, storage, [integer(hsize_t) ::], c_loc(bytes), &
             failed)
       call close_storage(storage)
-      if (failed) call self%fail(object//'@'//name, error)
+      if (failed) call self%write_failure(object//'@'//name, error)
    end subroutine set_text
 
    !> Makes an empty dataset of numbers that grows by `append`.
    subroutine create_series(self, path, kind, n_components, chunk_rows, description, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path, description
       integer, intent(in) :: kind           !! series_real or series_integer
       integer, intent(in) :: n_components   !! 0: shape (N) in the file; n: shape N x n
@@ -225,12 +225,12 @@ contains
       if (kind == series_integer) storage = integer_storage()
       call make_series(self%id, path, description, storage, n_components, &
             chunks_type(chunk_rows, self%deflate), failed)
-      if (failed) call self%fail(path, error)
+      if (failed) call self%write_failure(path, error)
    end subroutine create_series
 
    !> Makes an empty list of texts that grows by `append`; longer texts are cut.
    subroutine create_text_series(self, path, length, chunk_rows, description, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path, description
       integer, intent(in) :: length, chunk_rows
       type(error_type), allocatable, intent(out) :: error   !! status_file
@@ -244,11 +244,11 @@ contains
       call make_series(self%id, path, description, storage, 0, &
             chunks_type(chunk_rows, self%deflate), failed)
       call close_storage(storage)
-      if (failed) call self%fail(path, error)
+      if (failed) call self%write_failure(path, error)
    end subroutine create_text_series
 
    subroutine append_reals(self, path, values, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path
       real(wp), intent(in), contiguous, target :: values(:)
       type(error_type), allocatable, intent(out) :: error
@@ -257,7 +257,7 @@ contains
    end subroutine append_reals
 
    subroutine append_real_table(self, path, values, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path
       real(wp), intent(in), contiguous, target :: values(:, :)
       type(error_type), allocatable, intent(out) :: error
@@ -266,7 +266,7 @@ contains
    end subroutine append_real_table
 
    subroutine append_integers(self, path, values, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path
       integer, intent(in) :: values(:)
       type(error_type), allocatable, intent(out) :: error
@@ -275,7 +275,7 @@ contains
    end subroutine append_integers
 
    subroutine append_longs(self, path, values, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path
       integer(int64), intent(in), contiguous, target :: values(:)
       type(error_type), allocatable, intent(out) :: error
@@ -284,7 +284,7 @@ contains
    end subroutine append_longs
 
    subroutine append_texts(self, path, values, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path, values(:)
       type(error_type), allocatable, intent(out) :: error
       character(kind=c_char), allocatable, target :: bytes(:)
@@ -297,7 +297,7 @@ contains
    end subroutine append_texts
 
    subroutine append_values(self, path, storage, n_values, address, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path
       type(storage_type), intent(in) :: storage
       integer, intent(in) :: n_values
@@ -306,7 +306,7 @@ contains
       logical :: failed
 
       call append_block(self%id, path, storage, n_values, address, failed)
-      if (failed) call self%fail(path, error)
+      if (failed) call self%write_failure(path, error)
    end subroutine append_values
 
    !> The characters of the texts, one after the other; a blank for a text of no length.

@@ -3,17 +3,17 @@ module time_loop
    use kinds, only: wp, int64
    use errors, only: error_type, new_error, status_numerical
    use text, only: to_text
-   use clock, only: seconds_now
-   use cost_account, only: cost_type, enter, leave, next_increment, end_increments, phase_build, &
+   use cost_account, only: enter, leave, next_increment, end_increments, phase_build, &
          phase_output
    use steps, only: step_type
    use energy_ledger, only: close_increment
    use effective_matrix, only: mark_implicit
    use impact_scene, only: scene_type
-   use result_file, only: result_file_type, record_increment, write_system, flush_results
+   use result_file, only: result_file_type, record_increment, write_system
    use command_line, only: version_text
    use run_log, only: log_type, say, note, write_status, has_line
    use progress, only: progress_type, show_progress
+   use publishing, only: publishing_type, is_due, publish_now, was_slow_to_start
    use scene_setup, only: simulation_type
    use increment_count, only: count_increments, last_increment
    use step_start, only: start_step
@@ -30,18 +30,13 @@ module time_loop
 
    public :: output_type, run_step
 
-   !> Results are brought to the disk at least this often, seconds.
-   real(wp), parameter :: flush_interval = 5.0_wp
-   !> Before the first increment of a run whose start-up took longer they are there too, seconds.
-   real(wp), parameter :: quick_start = 0.5_wp
-
    !> What a run writes to.
    type :: output_type
       type(result_file_type) :: results
       type(log_type) :: log
       type(progress_type) :: progress
       type(preview_type) :: preview
-      real(wp) :: last_flush = 0.0_wp
+      type(publishing_type) :: publishing
       real(wp) :: end_time = 0.0_wp              !! total time at the end of the run
       integer(int64) :: iterations = 0           !! at the end of the last increment
    end type output_type
@@ -93,8 +88,8 @@ contains
       call record_increment(output%results, simulation%scene, simulation%contact, &
             simulation%motion, simulation%model%steps(1)%requests, 0, .false., error)
       if (allocated(error)) return
-      if (seconds_now() - output%last_flush > quick_start) call flush_now(output, &
-            simulation%scene%system%cost, error)
+      if (was_slow_to_start(output%publishing)) call publish_now(output%publishing, &
+            output%results, output%log, simulation%scene%system%cost, error)
    end subroutine record_start
 
    !> Increments of one size, the last one shorter where they do not fill the step.
@@ -230,7 +225,8 @@ contains
          end if
          output%iterations = scene%n_iterations
          call show_progress(output%progress, motion%motion%t/output%end_time, motion%motion%t)
-         call flush_now_and_then(output, scene%system%cost, error)
+         if (is_due(output%publishing)) call publish_now(output%publishing, output%results, &
+               output%log, scene%system%cost, error)
          if (allocated(error)) return
          call next_increment(scene%system%cost)
          if (scene%settings%anchored) then
@@ -276,27 +272,5 @@ contains
       end do
       call note(log, line)
    end subroutine note_residuals
-
-   !> Keeps the file complete up to a few seconds ago.
-   subroutine flush_now_and_then(output, cost, error)
-      type(output_type), intent(inout) :: output
-      type(cost_type), intent(inout) :: cost
-      type(error_type), allocatable, intent(out) :: error
-
-      if (seconds_now() - output%last_flush >= flush_interval) call flush_now(output, cost, &
-            error)
-   end subroutine flush_now_and_then
-
-   subroutine flush_now(output, cost, error)
-      type(output_type), intent(inout) :: output
-      type(cost_type), intent(inout) :: cost
-      type(error_type), allocatable, intent(out) :: error
-      integer :: outer
-
-      call enter(cost, phase_output, outer, .true.)
-      call flush_results(output%results, error)
-      call leave(cost, outer)
-      output%last_flush = seconds_now()
-   end subroutine flush_now
 
 end module time_loop
