@@ -9,6 +9,7 @@ module hdf5_output
    use kinds, only: int64, wp
    use errors, only: error_type, new_error, status_file
    use clock, only: seconds_now
+   use file_calls, only: is_regular, look_at
    use part_file, only: part_file_type, claim, publish, finish, discard, reserve_room, is_claimed, &
          has_published, part_path
    use hdf5_opening, only: close_file, create_file, file_size, flush_file, hid_t, modify_file
@@ -31,6 +32,7 @@ module hdf5_output
       real(wp) :: started = 0.0_wp
       logical :: broken = .false.                !! the library has failed
       logical :: full = .false.                  !! there was no space for something
+      logical :: saved = .false.                 !! closed, with all that was written
    contains
       procedure :: create
       procedure :: create_claimed
@@ -41,6 +43,7 @@ module hdf5_output
       procedure :: publish => publish_now
       procedure :: close => close_for_good
       procedure :: drop
+      procedure :: remark
       procedure :: write_failure
    end type hdf5_output_type
 
@@ -94,6 +97,7 @@ contains
       self%started = seconds_now()
       self%broken = .false.
       self%full = .false.
+      self%saved = .false.
    end subroutine take_over
 
    !> The first space of a file just opened.
@@ -168,6 +172,7 @@ contains
          call discard(self%place)
       else
          call finish(self%place, seconds_now() - self%started > worth_waiting, error)
+         self%saved = .true.
       end if
    end subroutine close_for_good
 
@@ -179,6 +184,23 @@ contains
       if (self%is_open()) call shut(self, ignored)
       call discard(self%place)
    end subroutine drop
+
+   !> What a user has to know of the file at the path after a failure; empty if it is as expected.
+   function remark(self) result(words)
+      class(hdf5_output_type), intent(in) :: self
+      character(len=:), allocatable :: words
+
+      words = ''
+      if (self%saved .or. .not. allocated(self%path)) return
+      if (has_published(self%place)) then
+         words = ''''//self%path//''' has the results up to when they were last saved'
+      else if (is_regular(look_at(self%path))) then
+         words = ''''//self%path//''' is still that of an earlier run: nothing of ' &
+               //'this one was saved'
+      else
+         words = 'no results were saved'
+      end if
+   end function remark
 
    !> Closes the file for the library, unless that has failed before.
    subroutine shut(self, error)
