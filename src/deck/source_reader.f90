@@ -14,13 +14,18 @@ module source_reader
 
 contains
 
-   !> Reads a file and appends it to the source; a byte that is no text is an error.
+   !> Reads a file and appends it to the source, which may know its text already; a byte that is no
+   !> text is an error.
    subroutine add_file(source, path, error)
       type(source_type), intent(inout) :: source
       character(len=*), intent(in) :: path
       type(error_type), allocatable, intent(out) :: error   !! status_file if it cannot be read
       character(len=:), allocatable :: content
 
+      if (source%n_files < source%n_stored) then
+         source%n_files = source%n_files + 1
+         return
+      end if
       call read_content(path, content, error)
       if (allocated(error)) return
       call make_room(source)
