@@ -2,6 +2,7 @@
 module source_reader
    use, intrinsic :: iso_fortran_env, only: int64
    use errors, only: error_type, new_error, status_file
+   use file_calls, only: file_facts_type, look_at, is_regular
    use places, only: source_type, source_file_type, source_line_type, place_type, fail_at
    use places, only: new_source_file
    implicit none
@@ -40,9 +41,17 @@ contains
       type(error_type), allocatable, intent(out) :: error
       character(len=*), parameter :: byte_order_mark = char(239)//char(187)//char(191)
       character(len=200) :: reason
+      type(file_facts_type) :: facts
       integer(int64) :: length
       integer :: unit, status
 
+      facts = look_at(path)
+      if (facts%exists .and. .not. is_regular(facts)) then
+         ! reading a pipe could wait for ever
+         call new_error(error, status_file, 'cannot read '''//path//''': it is a directory, ' &
+               //'pipe or device'//new_line('a')//'  cure: save the deck in a file')
+         return
+      end if
       open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
             action='read', iostat=status, iomsg=reason)
       if (status /= 0) then
