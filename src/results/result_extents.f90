@@ -81,7 +81,7 @@ contains
       if (any([present_extents%history, present_extents%energy, present_extents%events, &
             present_extents%frames] /= [extents%history, extents%energy, extents%events, &
             extents%frames])) misfit = 'they have columns or fields besides'
-      self%has_records = .true.
+      self%has_records = .not. allocated(misfit)
    end subroutine resume_results
 
    subroutine cut_results(self, extents, misfit, error)
