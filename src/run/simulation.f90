@@ -59,6 +59,7 @@ contains
       call report_advice(lessons, output%log)
       call report_end(output%log, error)
       call close_log(output%log)
+      call simulation%scene%system%matrices%release()
    end subroutine run_deck
 
    !> The last line of the log: how the run ended; what a message says beyond its first line, as the
