@@ -1,0 +1,127 @@
+!> What asks a run to stop between two increments: a signal, a stop file beside the deck, the time
+!> limit.
+module stop_request
+   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
+   use kinds, only: wp
+   use text, only: to_text
+   use errors, only: error_type, new_error, status_interrupted
+   use stop_signals, only: signal_came, signal_name
+   implicit none
+   private
+
+   public :: watch_type, start_watch, look_for_stop, restart_clock, remove_stop_files, stop_run
+
+   !> What is looked at, and when.
+   type :: watch_type
+      character(len=:), allocatable :: reason    !! to stop, once there is one
+      character(len=:), allocatable, private :: deck, stem   !! path, and that without its ending
+      real(wp), private :: next_look = 0.0_wp    !! for a stop file, on the clock
+      real(wp), private :: limit = 0.0_wp        !! seconds the run may take, 0: no limit
+      real(wp), private :: deadline = huge(1.0_wp)   !! on the clock
+      real(wp), private :: increment_began = 0.0_wp
+      real(wp), private :: longest = 0.0_wp      !! of the last increments, seconds
+   end type watch_type
+
+   !> Seconds between two looks for a stop file.
+   real(wp), parameter :: pause = 1.0_wp
+   !> Part of the longest increment that the one before the last counts for, so that one long
+   !> increment is forgotten after some dozens.
+   real(wp), parameter :: memory = 0.95_wp
+   !> An increment may take so many times the longest of the last ones.
+   real(wp), parameter :: surprise = 1.5_wp
+
+   interface
+      function unlink(path) bind(c, name='unlink') result(failure)
+         import :: c_char, c_int
+         implicit none
+         character(kind=c_char), intent(in) :: path(*)
+         integer(c_int) :: failure
+      end function unlink
+   end interface
+
+contains
+
+   !> A watch over a run of the deck that began at a time of the clock.
+   subroutine start_watch(self, deck, time_limit, began)
+      type(watch_type), intent(out) :: self
+      character(len=*), intent(in) :: deck       !! path
+      real(wp), intent(in) :: time_limit         !! seconds, 0: none
+      real(wp), intent(in) :: began
+      integer :: dot
+
+      dot = index(deck, '.', back=.true.)
+      if (dot <= index(deck, '/', back=.true.) + 1) dot = len(deck) + 1
+      self%deck = deck
+      self%stem = deck(:dot - 1)
+      self%limit = time_limit
+      if (time_limit > 0.0_wp) self%deadline = began + time_limit
+      self%next_look = began
+      self%increment_began = huge(1.0_wp)
+   end subroutine start_watch
+
+   !> Time not to be counted for an increment ends here.
+   pure subroutine restart_clock(self, now)
+      type(watch_type), intent(inout) :: self
+      real(wp), intent(in) :: now                !! on the clock
+
+      self%increment_began = now
+   end subroutine restart_clock
+
+   !> Looks, before an increment, whether it is to be taken: if not, there is a reason from here on.
+   !> A stop file that is obeyed is removed.
+   subroutine look_for_stop(self, now, saving)
+      type(watch_type), intent(inout) :: self
+      real(wp), intent(in) :: now                !! on the clock
+      real(wp), intent(in) :: saving             !! seconds that writing the state will take
+
+      if (allocated(self%reason)) return
+      self%longest = max(now - self%increment_began, memory*self%longest)
+      self%increment_began = now
+      if (signal_came()) then
+         self%reason = signal_name()
+      else if (now + surprise*self%longest + saving >= self%deadline) then
+         self%reason = 'the time limit of '//to_text(self%limit)//' s'
+      else if (now >= self%next_look) then
+         self%next_look = now + pause
+         call look_for_files(self)
+      end if
+   end subroutine look_for_stop
+
+   subroutine look_for_files(self)
+      type(watch_type), intent(inout) :: self
+
+      call obey_file(self, self%stem//'.stop')
+      if (.not. allocated(self%reason)) call obey_file(self, self%deck//'.stop')
+   end subroutine look_for_files
+
+   subroutine obey_file(self, path)
+      type(watch_type), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      logical :: exists
+
+      inquire (file=path, exist=exists)
+      if (.not. exists) return
+      self%reason = 'the file '//path
+      if (unlink(path//c_null_char) /= 0) self%reason = self%reason &
+            //' (it cannot be removed and would stop the next run too)'
+   end subroutine obey_file
+
+   !> A run that is over leaves no stop file to the next one.
+   subroutine remove_stop_files(self)
+      type(watch_type), intent(in) :: self
+      integer(c_int) :: failure
+
+      failure = unlink(self%stem//'.stop'//c_null_char)
+      failure = unlink(self%deck//'.stop'//c_null_char)
+   end subroutine remove_stop_files
+
+   !> The error with which an interrupted run ends.
+   subroutine stop_run(self, place, error)
+      type(watch_type), intent(in) :: self
+      character(len=*), intent(in) :: place      !! where in the run it stops
+      type(error_type), allocatable, intent(out) :: error
+
+      call new_error(error, status_interrupted, 'interrupted by '//self%reason//' '//place)
+   end subroutine stop_run
+
+end module stop_request
