@@ -15,7 +15,9 @@ module simulation
    use feature_report, only: report_advice
    use deck_check, only: prepare, report_preview
    use run_report, only: report_model, report_notes, report_summary
-   use time_loop, only: output_type, run_step
+   use course, only: course_type, begin_course
+   use run_output, only: output_type
+   use time_loop, only: run_step
    implicit none
    private
 
@@ -102,6 +104,7 @@ contains
       type(command_type), intent(in) :: command
       type(output_type), intent(inout) :: output
       type(error_type), allocatable, intent(out) :: error
+      type(course_type) :: course
       integer :: i, outer
 
       call report_model(simulation, output%log)
@@ -113,11 +116,12 @@ contains
       call leave(simulation%scene%system%cost, outer)
       if (allocated(error)) return
       call start_progress(output%progress, command%quiet)
-      do i = 1, size(simulation%model%steps)
+      do i = max(1, course%step), size(simulation%model%steps)
+         if (i > course%step) call begin_course(course, i, simulation%motion%motion%t)
          if (simulation%model%steps(i)%procedure == procedure_frequency) then
             call run_frequency_step(simulation, i, output%results, output%log, error)
          else
-            call run_step(simulation, i, output, error)
+            call run_step(simulation, course, output, error)
          end if
          if (allocated(error)) return
       end do
