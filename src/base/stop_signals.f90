@@ -59,19 +59,17 @@ module stop_signals
 
 contains
 
-   !> From here on signals are noted. Those that are ignored, as SIGHUP under nohup, stay so.
+   !> From here on signals are noted. SIGHUP stays ignored where it is, as under nohup. SIGINT does
+   !> not: shells ignore it for what they run in the background, where only `kill` sends it.
    subroutine catch_signals()
-      integer(c_int), parameter :: numbers(3) = [hang_up, interrupt, terminate]
       integer(c_intptr_t), parameter :: ignored = 1
-      type(c_funptr) :: ignore, before
-      integer :: i
+      type(c_funptr) :: before
 
-      ignore = transfer(ignored, c_null_funptr)
-      do i = 1, size(numbers)
-         before = set_handler(numbers(i), ignore)
-         if (transfer(before, ignored) /= ignored) before = set_handler(numbers(i), &
-               c_funloc(note_signal))
-      end do
+      before = set_handler(interrupt, c_funloc(note_signal))
+      before = set_handler(terminate, c_funloc(note_signal))
+      before = set_handler(hang_up, transfer(ignored, c_null_funptr))
+      if (transfer(before, ignored) /= ignored) before = set_handler(hang_up, &
+            c_funloc(note_signal))
    end subroutine catch_signals
 
    !> Whether a signal has asked to stop.

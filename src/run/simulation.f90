@@ -1,6 +1,7 @@
 !> The run: deck, scene, files, the steps one after the other, and how it ended.
 module simulation
    use errors, only: error_type
+   use stop_signals, only: catch_signals
    use clock, only: seconds_now
    use cost_account, only: start_clock, enter, leave, phase_read, phase_build, phase_output
    use steps, only: procedure_frequency
@@ -8,6 +9,7 @@ module simulation
    use result_file, only: open_results, close_results
    use command_line, only: command_type
    use run_log, only: log_type, open_log, close_log, say
+   use stop_request, only: start_watch, remove_stop_files
    use progress, only: start_progress, end_progress
    use scene_setup, only: simulation_type, initial_motion
    use frequency_run, only: run_frequency_step
@@ -38,6 +40,8 @@ contains
       associate (cost => simulation%scene%system%cost)
          call start_clock(cost)
          output%last_flush = seconds_now()
+         call catch_signals()
+         call start_watch(output%watch, command%deck, command%time_limit, output%last_flush)
          call enter(cost, phase_read, outer)
          call read_deck(simulation%model, command%deck, command%definitions, error)
          call leave(cost, outer)
@@ -53,6 +57,7 @@ contains
       call open_log(output%log, stem_of(command%output), command%quiet, error)
       if (allocated(error)) return
       call run_steps(simulation, command, output, error)
+      call remove_stop_files(output%watch)
       call end_progress(output%progress)
       call close_results(output%results, simulation%scene, close_error)
       if (.not. allocated(error) .and. allocated(close_error)) call move_alloc(close_error, error)

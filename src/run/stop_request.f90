@@ -4,12 +4,13 @@ module stop_request
    use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
    use kinds, only: wp
    use text, only: to_text
+   use clock, only: pace_type
    use errors, only: error_type, new_error, status_interrupted
    use stop_signals, only: signal_came, signal_name
    implicit none
    private
 
-   public :: watch_type, start_watch, look_for_stop, restart_clock, remove_stop_files, stop_run
+   public :: watch_type, start_watch, look_for_stop, remove_stop_files, stop_run
 
    !> What is looked at, and when.
    type :: watch_type
@@ -18,7 +19,6 @@ module stop_request
       real(wp), private :: next_look = 0.0_wp    !! for a stop file, on the clock
       real(wp), private :: limit = 0.0_wp        !! seconds the run may take, 0: no limit
       real(wp), private :: deadline = huge(1.0_wp)   !! on the clock
-      real(wp), private :: increment_began = 0.0_wp
       real(wp), private :: longest = 0.0_wp      !! of the last increments, seconds
    end type watch_type
 
@@ -56,33 +56,26 @@ contains
       self%limit = time_limit
       if (time_limit > 0.0_wp) self%deadline = began + time_limit
       self%next_look = began
-      self%increment_began = huge(1.0_wp)
    end subroutine start_watch
-
-   !> Time not to be counted for an increment ends here.
-   pure subroutine restart_clock(self, now)
-      type(watch_type), intent(inout) :: self
-      real(wp), intent(in) :: now                !! on the clock
-
-      self%increment_began = now
-   end subroutine restart_clock
 
    !> Looks, before an increment, whether it is to be taken: if not, there is a reason from here on.
    !> A stop file that is obeyed is removed.
-   subroutine look_for_stop(self, now, saving)
+   subroutine look_for_stop(self, pace, saving)
       type(watch_type), intent(inout) :: self
-      real(wp), intent(in) :: now                !! on the clock
+      type(pace_type), intent(in) :: pace        !! of the increments
       real(wp), intent(in) :: saving             !! seconds that writing the state will take
 
       if (allocated(self%reason)) return
-      self%longest = max(now - self%increment_began, memory*self%longest)
-      self%increment_began = now
       if (signal_came()) then
          self%reason = signal_name()
-      else if (now + surprise*self%longest + saving >= self%deadline) then
+         return
+      end if
+      if (.not. pace%fresh) return
+      self%longest = max(pace%interval, memory*self%longest)
+      if (pace%now + surprise*self%longest + saving >= self%deadline) then
          self%reason = 'the time limit of '//to_text(self%limit)//' s'
-      else if (now >= self%next_look) then
-         self%next_look = now + pause
+      else if (pace%now >= self%next_look) then
+         self%next_look = pace%now + pause
          call look_for_files(self)
       end if
    end subroutine look_for_stop

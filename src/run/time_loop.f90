@@ -3,6 +3,7 @@ module time_loop
    use kinds, only: wp
    use errors, only: error_type, new_error, status_numerical
    use text, only: to_text
+   use clock, only: start_pace
    use cost_account, only: enter, leave, end_increments, phase_build, phase_output
    use steps, only: step_type
    use effective_matrix, only: mark_implicit
@@ -17,7 +18,7 @@ module time_loop
    use rehearsal, only: rehearse, report_tolerance
    use run_report, only: report_step
    use course, only: course_type, is_fresh, find_next
-   use run_output, only: output_type, flush_after_start
+   use run_output, only: output_type, flush_after_start, stop_if_asked
    use increment_end, only: finish_increment
    implicit none
    private
@@ -63,6 +64,9 @@ contains
       if (allocated(error)) return
       call report_step(simulation, course%step, output%log)
       if (course%step == 1) call record_start(simulation, output, error)
+      if (allocated(error)) return
+      call start_pace(output%pace)
+      call stop_if_asked(output, course%step, 0, simulation%motion%motion%t, error)
    end subroutine enter_step
 
    !> The system of equations and the initial state.
@@ -156,7 +160,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       if (is_fresh(course)) then
-         call rehearse(simulation, course%step, output%log, course%plan, error)
+         call rehearse(simulation, course%step, output, course%plan, error)
          if (allocated(error)) return
          call start_twins(course%twins, simulation, course%plan%settings)
       end if
