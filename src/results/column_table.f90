@@ -53,7 +53,7 @@ contains
    !> Makes the group of the table.
    subroutine create(self, file, group, description, error)
       class(column_table_type), intent(out) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       character(len=*), intent(in) :: group   !! '/energy', say
       character(len=*), intent(in) :: description
       type(error_type), allocatable, intent(out) :: error   !! status_file
@@ -65,7 +65,7 @@ contains
    !> Adds a column of reals; only before the first row.
    subroutine add_column(self, file, path, description, error, partial)
       class(column_table_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       character(len=*), intent(in) :: path   !! in the group: 'time', 'node_5/U1'
       character(len=*), intent(in) :: description
       type(error_type), allocatable, intent(out) :: error   !! status_file
@@ -82,7 +82,7 @@ contains
    !> Adds a column of integers; only before the first row.
    subroutine add_integer_column(self, file, path, description, error)
       class(column_table_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       character(len=*), intent(in) :: path, description
       type(error_type), allocatable, intent(out) :: error   !! status_file
 
@@ -96,7 +96,7 @@ contains
    !> Adds a column of texts of at most `length` (and 80) characters; only before the first row.
    subroutine add_text_column(self, file, path, length, description, error)
       class(column_table_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       character(len=*), intent(in) :: path, description
       integer, intent(in) :: length
       type(error_type), allocatable, intent(out) :: error   !! status_file
@@ -117,7 +117,7 @@ contains
    !> Appends a row to a table of reals.
    subroutine append_reals(self, file, values, error)
       class(column_table_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       real(wp), intent(in) :: values(:)
       type(error_type), allocatable, intent(out) :: error   !! status_file
 
@@ -127,7 +127,7 @@ contains
    !> Appends a row to a table of several kinds of columns.
    subroutine append_mixed(self, file, values, integers, texts, error)
       class(column_table_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       real(wp), intent(in) :: values(:)
       integer, intent(in) :: integers(:)
       character(len=*), intent(in) :: texts(:)
@@ -174,7 +174,7 @@ contains
    !> Writes the rows held in memory, column by column.
    subroutine flush_rows(self, file, error)
       class(column_table_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(error_type), allocatable, intent(out) :: error   !! status_file
       integer :: column, n
 

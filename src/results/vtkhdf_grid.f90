@@ -55,7 +55,7 @@ contains
    !> triangle and quadrilateral.
    subroutine create(self, file, points, types, connectivity, offsets, error)
       class(vtkhdf_grid_type), intent(out) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       real(wp), contiguous, intent(in) :: points(:, :)       !! (3, n_points)
       integer, contiguous, intent(in) :: types(:)            !! (n_cells)
       integer, contiguous, intent(in) :: connectivity(:)     !! points of the cells, counted from 0
@@ -91,7 +91,7 @@ contains
    end subroutine create
 
    subroutine write_count(file, name, number, error)
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       character(len=*), intent(in) :: name
       integer, intent(in) :: number
       type(error_type), allocatable, intent(out) :: error
@@ -103,7 +103,7 @@ contains
 
    !> Makes the group with one entry a frame.
    subroutine create_steps(file, error)
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(error_type), allocatable, intent(out) :: error
 
       call file%create_group(root//'/Steps', 'the frames', error)
@@ -118,7 +118,7 @@ contains
    end subroutine create_steps
 
    subroutine create_step_list(file, name, n_components, error)
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       character(len=*), intent(in) :: name
       integer, intent(in) :: n_components
       type(error_type), allocatable, intent(out) :: error
@@ -130,7 +130,7 @@ contains
    !> Adds a quantity at the points; only before the first frame.
    subroutine add_point_field(self, file, name, n_components, description, field, error, partial)
       class(vtkhdf_grid_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       character(len=*), intent(in) :: name, description
       integer, intent(in) :: n_components   !! 1 scalar, 3 vector, 6 symmetric tensor
       integer, intent(out) :: field         !! its number, for `set_values`
@@ -145,7 +145,7 @@ contains
    !> Adds a quantity of the cells; only before the first frame.
    subroutine add_cell_field(self, file, name, n_components, description, field, error)
       class(vtkhdf_grid_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       character(len=*), intent(in) :: name, description
       integer, intent(in) :: n_components   !! 1 scalar, 3 vector, 6 symmetric tensor
       integer, intent(out) :: field         !! its number, for `set_values`
@@ -180,7 +180,7 @@ contains
    !> Makes the datasets of a field in the file.
    subroutine create_field(self, file, field, description, error)
       type(vtkhdf_grid_type), intent(in) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(field_type), intent(in) :: field
       character(len=*), intent(in) :: description
       type(error_type), allocatable, intent(out) :: error
@@ -257,7 +257,7 @@ contains
    !> Makes a frame of the fields as they were handed over.
    subroutine append_frame(self, file, time, error)
       class(vtkhdf_grid_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       real(wp), intent(in) :: time   !! or whatever orders the frames, e.g. a frequency
       !> status_file; status_numerical: a value that is not finite
       type(error_type), allocatable, intent(out) :: error
@@ -280,7 +280,7 @@ contains
    !> Writes the gathered frames: data, entries in the lists, at last their number.
    subroutine flush_frames(self, file, error)
       class(vtkhdf_grid_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(error_type), allocatable, intent(out) :: error   !! status_file
       integer :: i, last
 
@@ -293,8 +293,6 @@ contains
       if (allocated(error)) return
       call file%set_attribute(root//'/Steps', 'NSteps', self%count_frames(), error)
       if (allocated(error)) return
-      call file%flush(error)
-      if (allocated(error)) return
       last = min(self%n_held, size(self%times) - 1)
       do i = 1, size(self%fields)
          call copy_frame(self%fields(i), last*self%fields(i)%n, 0)
@@ -305,7 +303,7 @@ contains
 
    subroutine append_field(self, file, field, error)
       type(vtkhdf_grid_type), intent(in) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(field_type), intent(in) :: field
       type(error_type), allocatable, intent(out) :: error
       integer(int64) :: begin(self%n_held)
@@ -321,7 +319,7 @@ contains
 
    subroutine append_steps(self, file, error)
       type(vtkhdf_grid_type), intent(in) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(error_type), allocatable, intent(out) :: error
       character(len=*), parameter :: steps = root//'/Steps/'
       integer, dimension(self%n_held) :: zero, one

@@ -15,7 +15,7 @@ module increment_end
    use increment_checks, only: check_finite, check_energies, check_interpolation, check_balance, &
          needs_energies
    use course, only: course_type
-   use run_output, only: output_type, flush_now_and_then, stop_if_asked
+   use run_output, only: output_type, publish_now_and_then, stop_if_asked
    implicit none
    private
 
@@ -34,7 +34,7 @@ contains
       call keep_pace(output%pace)
       call record(simulation, course, output, error)
       if (allocated(error)) return
-      call flush_now_and_then(output, simulation%scene%system%cost, error)
+      call publish_now_and_then(output, simulation%scene%system%cost, error)
       if (allocated(error)) return
       call next_increment(simulation%scene%system%cost)
       call check_end(simulation, course, error)

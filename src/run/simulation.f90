@@ -2,12 +2,14 @@
 module simulation
    use errors, only: error_type
    use stop_signals, only: catch_signals
-   use clock, only: seconds_now
+   use part_file, only: part_file_type, check_output, discard
    use cost_account, only: start_clock, enter, leave, phase_read, phase_build, phase_output
    use steps, only: procedure_frequency
    use deck_reader, only: read_deck
    use result_file, only: open_results, close_results
    use command_line, only: command_type
+   use output_files, only: claim_output, log_stem
+   use publishing, only: start_publishing
    use run_log, only: log_type, open_log, close_log, say
    use stop_request, only: start_watch, remove_stop_files
    use progress, only: start_progress, end_progress
@@ -33,15 +35,18 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(simulation_type) :: simulation
       type(output_type) :: output
+      type(part_file_type) :: place
       type(advice_list_type) :: lessons
       type(error_type), allocatable :: close_error
       integer :: outer
 
       associate (cost => simulation%scene%system%cost)
          call start_clock(cost)
-         output%last_flush = seconds_now()
          call catch_signals()
-         call start_watch(output%watch, command%deck, command%time_limit, output%last_flush)
+         call start_publishing(output%publishing)
+         call start_watch(output%watch, command%deck, command%time_limit, output%publishing%last)
+         call check_output(command%output, command%overwrite, error)
+         if (allocated(error)) return
          call enter(cost, phase_read, outer)
          call read_deck(simulation%model, command%deck, command%definitions, error)
          call leave(cost, outer)
@@ -54,9 +59,14 @@ contains
          call leave(cost, outer)
       end associate
       if (allocated(error)) return
-      call open_log(output%log, stem_of(command%output), command%quiet, error)
+      call claim_output(place, command, simulation%model%source, error)
       if (allocated(error)) return
-      call run_steps(simulation, command, output, error)
+      call open_log(output%log, log_stem(command%output), command%quiet, error)
+      if (allocated(error)) then
+         call discard(place)
+         return
+      end if
+      call run_steps(simulation, command, place, output, error)
       call remove_stop_files(output%watch)
       call end_progress(output%progress)
       call close_results(output%results, simulation%scene, close_error)
@@ -65,7 +75,8 @@ contains
       if (.not. allocated(error)) call advise_end(lessons, simulation)
       call report_advice(lessons, output%log)
       call report_end(output%log, error)
-      call close_log(output%log)
+      call close_log(output%log, close_error)
+      if (.not. allocated(error) .and. allocated(close_error)) call move_alloc(close_error, error)
    end subroutine run_deck
 
    !> The last line of the log: how the run ended; what a message says beyond its first line, as the
@@ -93,20 +104,10 @@ contains
       call initial_motion(simulation, error)
    end subroutine rebuild
 
-   !> The path without its ending.
-   pure function stem_of(path) result(stem)
-      character(len=*), intent(in) :: path
-      character(len=:), allocatable :: stem
-      integer :: dot
-
-      dot = index(path, '.', back=.true.)
-      if (dot <= index(path, '/', back=.true.) + 1) dot = len(path) + 1
-      stem = path(:dot - 1)
-   end function stem_of
-
-   subroutine run_steps(simulation, command, output, error)
+   subroutine run_steps(simulation, command, place, output, error)
       type(simulation_type), intent(inout) :: simulation
       type(command_type), intent(in) :: command
+      type(part_file_type), intent(in) :: place  !! of the results
       type(output_type), intent(inout) :: output
       type(error_type), allocatable, intent(out) :: error
       type(course_type) :: course
@@ -116,8 +117,8 @@ contains
       call report_preview(output%preview, simulation, .false., output%log)
       call report_notes(simulation, output%log)
       call enter(simulation%scene%system%cost, phase_output, outer, .true.)
-      call open_results(output%results, command%output, simulation%model, simulation%scene, &
-            simulation%contact, error)
+      call open_results(output%results, place, command%output, simulation%model, &
+            simulation%scene, simulation%contact, error)
       call leave(simulation%scene%system%cost, outer)
       if (allocated(error)) return
       call start_progress(output%progress, command%quiet)

@@ -1,11 +1,11 @@
 !> What asks a run to stop between two increments: a signal, a stop file beside the deck, the time
 !> limit.
 module stop_request
-   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
    use kinds, only: wp
    use text, only: to_text
    use clock, only: pace_type
    use errors, only: error_type, new_error, status_interrupted
+   use file_calls, only: remove_file
    use stop_signals, only: signal_came, signal_name
    implicit none
    private
@@ -29,15 +29,6 @@ module stop_request
    real(wp), parameter :: memory = 0.95_wp
    !> An increment may take so many times the longest of the last ones.
    real(wp), parameter :: surprise = 1.5_wp
-
-   interface
-      function unlink(path) bind(c, name='unlink') result(failure)
-         import :: c_char, c_int
-         implicit none
-         character(kind=c_char), intent(in) :: path(*)
-         integer(c_int) :: failure
-      end function unlink
-   end interface
 
 contains
 
@@ -95,17 +86,18 @@ contains
       inquire (file=path, exist=exists)
       if (.not. exists) return
       self%reason = 'the file '//path
-      if (unlink(path//c_null_char) /= 0) self%reason = self%reason &
+      call remove_file(path)
+      inquire (file=path, exist=exists)
+      if (exists) self%reason = self%reason &
             //' (it cannot be removed and would stop the next run too)'
    end subroutine obey_file
 
    !> A run that is over leaves no stop file to the next one.
    subroutine remove_stop_files(self)
       type(watch_type), intent(in) :: self
-      integer(c_int) :: failure
 
-      failure = unlink(self%stem//'.stop'//c_null_char)
-      failure = unlink(self%deck//'.stop'//c_null_char)
+      call remove_file(self%stem//'.stop')
+      call remove_file(self%deck//'.stop')
    end subroutine remove_stop_files
 
    !> The error with which an interrupted run ends.

@@ -18,7 +18,7 @@ module time_loop
    use rehearsal, only: rehearse, report_tolerance
    use run_report, only: report_step
    use course, only: course_type, is_fresh, find_next
-   use run_output, only: output_type, flush_after_start, stop_if_asked
+   use run_output, only: output_type, publish_after_start, stop_if_asked
    use increment_end, only: finish_increment
    implicit none
    private
@@ -89,7 +89,7 @@ contains
       call record_increment(output%results, simulation%scene, simulation%contact, &
             simulation%motion, simulation%model%steps(1)%requests, 0, .false., error)
       if (allocated(error)) return
-      call flush_after_start(output, simulation%scene%system%cost, error)
+      call publish_after_start(output, simulation%scene%system%cost, error)
    end subroutine record_start
 
    !> Increments of one size, the last one shorter where they do not fill the step.

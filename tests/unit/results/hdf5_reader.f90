@@ -2,8 +2,9 @@
 module hdf5_reader
    use, intrinsic :: iso_c_binding, only: c_char, c_loc
    use errors, only: error_type, new_error, status_file
-   use hdf5_calls, only: close_file, close_storage, get_dataset, get_dims, hid_t, hsize_t, &
-         integer_storage, long_storage, open_file, real_storage, text_storage
+   use hdf5_calls, only: close_storage, get_dataset, get_dims, hid_t, hsize_t, integer_storage, &
+         long_storage, real_storage, text_storage
+   use hdf5_opening, only: close_file, open_file
    use kinds, only: int64, wp
    implicit none
    private
