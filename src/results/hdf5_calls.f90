@@ -1,5 +1,5 @@
-!> The calls to the HDF5 library, with those of hdf5_opening the only ones: datasets, attributes and
-!> growing datasets by path. hdf5_file and hdf5_reader give them types and error messages.
+!> The calls to the HDF5 library, with those of hdf5_opening and hdf5_changes the only ones: datasets,
+!> attributes and growing datasets by path. hdf5_file and hdf5_reader give them types and messages.
 module hdf5_calls
    use, intrinsic :: iso_c_binding, only: c_char, c_loc, c_ptr
    use hdf5, only: h5_integer_kind, h5aclose_f, h5acreate_f, h5aexists_f, h5aopen_f, h5awrite_f, &
@@ -19,7 +19,7 @@ module hdf5_calls
    public :: hid_t, hsize_t, storage_type, chunks_type
    public :: real_storage, integer_storage, long_storage, byte_storage, text_storage, close_storage
    public :: make_group
-   public :: put_dataset, put_attribute, make_series, append_block, get_dims, get_dataset
+   public :: put_dataset, put_attribute, make_series, append_block, get_dims, shape_of, get_dataset
 
    !> How one kind of value is stored and how it lies in memory.
    type :: storage_type

@@ -2,14 +2,13 @@
 !>
 !> Missing groups on the way to a new dataset are made. Integers are stored with 64 bits (and handed
 !> over so: the library's own conversion clears a megabyte for each dataset), reals in
-!> double precision. An array of shape (3, n) appears as n x 3 in the file. Every failure (no
-!> permission, disk full, ...) comes back as an error of status_file that names the file.
+!> double precision. An array of shape (3, n) appears as n x 3 in the file.
 module hdf5_file
    use, intrinsic :: iso_c_binding, only: c_char, c_loc, c_ptr
    use errors, only: error_type
    use hdf5_calls, only: append_block, byte_storage, chunks_type, close_storage, hsize_t, &
-         integer_storage, long_storage, make_group, make_series, put_attribute, put_dataset, &
-         real_storage, storage_type, text_storage
+         integer_storage, long_storage, make_series, put_attribute, real_storage, storage_type, &
+         text_storage
    use hdf5_output, only: hdf5_output_type
    use, intrinsic :: iso_fortran_env, only: int8
    use kinds, only: int64, wp
@@ -24,20 +23,18 @@ module hdf5_file
 
    !> A file open for writing. It must be closed: nothing closes it by itself.
    type, extends(hdf5_output_type) :: hdf5_file_type
-      integer :: deflate = 0   !! compression of the series
    contains
-      procedure :: compress
-      procedure :: create_group
       procedure :: write_bytes
       procedure :: create_series
       procedure :: create_text_series
-      generic :: write_dataset => write_reals, write_real_table, write_integers, &
+      generic :: write_dataset => write_reals, write_real_table, write_integers, write_longs, &
             write_integer_table, write_text, write_texts
+      generic :: overwrite => overwrite_reals, overwrite_longs
       generic :: set_attribute => set_integer, set_integers, set_real, set_text
       generic :: append => append_reals, append_real_table, append_integers, append_longs, &
             append_texts
       procedure, private :: write_reals, write_real_table, write_integers, write_integer_table
-      procedure, private :: write_text, write_texts
+      procedure, private :: write_text, write_texts, write_longs, overwrite_reals, overwrite_longs
       procedure, private :: set_integer, set_integers, set_real, set_text
       procedure, private :: append_reals, append_real_table, append_integers, append_longs
       procedure, private :: append_texts
@@ -45,35 +42,13 @@ module hdf5_file
 
 contains
 
-   !> Compresses all series made from here on.
-   pure subroutine compress(self, level)
-      class(hdf5_file_type), intent(inout) :: self
-      integer, intent(in) :: level   !! 0, not at all, to 9
-
-      self%deflate = level
-   end subroutine compress
-
-   !> Makes a group; it must not exist yet.
-   subroutine create_group(self, path, description, error)
-      class(hdf5_file_type), intent(inout) :: self
-      character(len=*), intent(in) :: path, description
-      type(error_type), allocatable, intent(out) :: error   !! status_file
-      logical :: failed
-
-      call make_group(self%id, path, description, failed)
-      if (failed) call self%write_failure(path, error)
-   end subroutine create_group
-
    subroutine write_reals(self, path, values, description, error)
       class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path, description
       real(wp), intent(in), contiguous, target :: values(:)
       type(error_type), allocatable, intent(out) :: error
-      logical :: failed
 
-      call put_dataset(self%id, path, description, real_storage(), shape(values, hsize_t), &
-            c_loc(values), failed)
-      if (failed) call self%write_failure(path, error)
+      call self%put(path, description, real_storage(), shape(values, hsize_t), c_loc(values), error)
    end subroutine write_reals
 
    subroutine write_real_table(self, path, values, description, error)
@@ -81,11 +56,8 @@ contains
       character(len=*), intent(in) :: path, description
       real(wp), intent(in), contiguous, target :: values(:, :)
       type(error_type), allocatable, intent(out) :: error
-      logical :: failed
 
-      call put_dataset(self%id, path, description, real_storage(), shape(values, hsize_t), &
-            c_loc(values), failed)
-      if (failed) call self%write_failure(path, error)
+      call self%put(path, description, real_storage(), shape(values, hsize_t), c_loc(values), error)
    end subroutine write_real_table
 
    subroutine write_integers(self, path, values, description, error)
@@ -94,12 +66,9 @@ contains
       integer, intent(in) :: values(:)
       type(error_type), allocatable, intent(out) :: error
       integer(int64), allocatable, target :: longs(:)
-      logical :: failed
 
       longs = int(values, int64)
-      call put_dataset(self%id, path, description, long_storage(), shape(longs, hsize_t), &
-            c_loc(longs), failed)
-      if (failed) call self%write_failure(path, error)
+      call self%put(path, description, long_storage(), shape(longs, hsize_t), c_loc(longs), error)
    end subroutine write_integers
 
    subroutine write_integer_table(self, path, values, description, error)
@@ -108,12 +77,9 @@ contains
       integer, intent(in) :: values(:, :)
       type(error_type), allocatable, intent(out) :: error
       integer(int64), allocatable, target :: longs(:, :)
-      logical :: failed
 
       longs = int(values, int64)
-      call put_dataset(self%id, path, description, long_storage(), shape(longs, hsize_t), &
-            c_loc(longs), failed)
-      if (failed) call self%write_failure(path, error)
+      call self%put(path, description, long_storage(), shape(longs, hsize_t), c_loc(longs), error)
    end subroutine write_integer_table
 
    !> Integers 0 to 255, stored as unsigned 8 bit numbers.
@@ -123,12 +89,9 @@ contains
       integer, intent(in) :: values(:)
       type(error_type), allocatable, intent(out) :: error   !! status_file
       integer(int8), allocatable, target :: bytes(:)
-      logical :: failed
 
       bytes = int(modulo(values + 128, 256) - 128, int8)
-      call put_dataset(self%id, path, description, byte_storage(), shape(bytes, hsize_t), &
-            c_loc(bytes), failed)
-      if (failed) call self%write_failure(path, error)
+      call self%put(path, description, byte_storage(), shape(bytes, hsize_t), c_loc(bytes), error)
    end subroutine write_bytes
 
    !> One text as a scalar of exactly its length.
@@ -138,14 +101,11 @@ contains
       type(error_type), allocatable, intent(out) :: error
       character(kind=c_char), allocatable, target :: bytes(:)
       type(storage_type) :: storage
-      logical :: failed
 
       call to_bytes([value], bytes)
       storage = text_storage(size(bytes))
-      call put_dataset(self%id, path, description, storage, [integer(hsize_t) ::], c_loc(bytes), &
-            failed)
+      call self%put(path, description, storage, [integer(hsize_t) ::], c_loc(bytes), error)
       call close_storage(storage)
-      if (failed) call self%write_failure(path, error)
    end subroutine write_text
 
    subroutine write_texts(self, path, values, description, error)
@@ -154,15 +114,41 @@ contains
       type(error_type), allocatable, intent(out) :: error
       character(kind=c_char), allocatable, target :: bytes(:)
       type(storage_type) :: storage
-      logical :: failed
 
       call to_bytes(values, bytes)
       storage = text_storage(max(1, len(values)))
-      call put_dataset(self%id, path, description, storage, shape(values, hsize_t), c_loc(bytes), &
-            failed)
+      call self%put(path, description, storage, shape(values, hsize_t), c_loc(bytes), error)
       call close_storage(storage)
-      if (failed) call self%write_failure(path, error)
    end subroutine write_texts
+
+   subroutine write_longs(self, path, values, description, error)
+      class(hdf5_file_type), intent(inout) :: self
+      character(len=*), intent(in) :: path, description
+      integer(int64), intent(in), contiguous, target :: values(:)
+      type(error_type), allocatable, intent(out) :: error
+
+      call self%put(path, description, long_storage(), shape(values, hsize_t), c_loc(values), error)
+   end subroutine write_longs
+
+   subroutine overwrite_reals(self, path, values, description, error)
+      class(hdf5_file_type), intent(inout) :: self
+      character(len=*), intent(in) :: path, description
+      real(wp), intent(in), contiguous, target :: values(:)
+      type(error_type), allocatable, intent(out) :: error
+
+      call self%renew(path, description, real_storage(), shape(values, hsize_t), c_loc(values), &
+            error)
+   end subroutine overwrite_reals
+
+   subroutine overwrite_longs(self, path, values, description, error)
+      class(hdf5_file_type), intent(inout) :: self
+      character(len=*), intent(in) :: path, description
+      integer(int64), intent(in), contiguous, target :: values(:)
+      type(error_type), allocatable, intent(out) :: error
+
+      call self%renew(path, description, long_storage(), shape(values, hsize_t), c_loc(values), &
+            error)
+   end subroutine overwrite_longs
 
    subroutine set_integer(self, object, name, value, error)
       class(hdf5_file_type), intent(inout) :: self
@@ -232,6 +218,9 @@ contains
       type(storage_type) :: storage
       logical :: failed
 
+      if (self%reopened) then
+         if (self%holds(path)) return
+      end if
       storage = real_storage()
       if (kind == series_integer) storage = integer_storage()
       call make_series(self%id, path, description, storage, n_components, &
@@ -248,6 +237,9 @@ contains
       type(storage_type) :: storage
       logical :: failed
 
+      if (self%reopened) then
+         if (self%holds(path)) return
+      end if
       storage = text_storage(length)
       call make_series(self%id, path, description, storage, 0, &
             chunks_type(chunk_rows, self%deflate), failed)

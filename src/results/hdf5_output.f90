@@ -1,4 +1,9 @@
-!> An HDF5 file from its making to its closing; hdf5_file writes what is in it.
+!> An HDF5 file from its making to its closing, its groups, and datasets by their addresses; hdf5_file
+!> gives them types.
+!>
+!> A file that is reopened (`modify_claimed`) is made again by the same calls as a new one: groups and
+!> series that are there stay, datasets and attributes are written anew, in their old place where
+!> they fit.
 !>
 !> It is written aside (part_file): what others see is what was published last, complete and
 !> closed. Before data are written, `reserve` has the disk set their space aside. So a full disk is
@@ -11,6 +16,9 @@ module hdf5_output
    use clock, only: seconds_now
    use part_file, only: part_file_type, claim, publish, finish, discard, reserve_room, is_claimed, &
          has_published, part_path
+   use, intrinsic :: iso_c_binding, only: c_ptr
+   use hdf5_calls, only: hsize_t, make_group, put_dataset, storage_type
+   use hdf5_changes, only: cut_rows, has_object, overwrite_dataset, remove_object
    use hdf5_opening, only: close_file, create_file, file_size, flush_file, hid_t, modify_file
    implicit none
    private
@@ -31,6 +39,8 @@ module hdf5_output
       real(wp) :: started = 0.0_wp
       logical :: broken = .false.                !! the library has failed
       logical :: full = .false.                  !! there was no space for something
+      logical :: reopened = .false.              !! it goes on from what it held
+      integer :: deflate = 0                     !! compression of the series
    contains
       procedure :: create
       procedure :: create_claimed
@@ -41,6 +51,13 @@ module hdf5_output
       procedure :: publish => publish_now
       procedure :: close => close_for_good
       procedure :: drop
+      procedure :: compress
+      procedure :: create_group
+      procedure :: holds
+      procedure :: remove
+      procedure :: cut
+      procedure :: put => put_values
+      procedure :: renew => renew_values
       procedure :: write_failure
    end type hdf5_output_type
 
@@ -80,6 +97,7 @@ contains
       logical :: failed
 
       call take_over(self, place, path)
+      self%reopened = .true.
       call modify_file(part_path(place), self%id, failed)
       call begin(self, failed, error)
    end subroutine modify_claimed
@@ -94,6 +112,7 @@ contains
       self%started = seconds_now()
       self%broken = .false.
       self%full = .false.
+      self%reopened = .false.
    end subroutine take_over
 
    !> The first space of a file just opened.
@@ -191,6 +210,100 @@ contains
       self%id = -1
       if (failed .and. .not. allocated(error)) call self%write_failure('everything', error)
    end subroutine shut
+
+   !> Makes a group; it must not exist yet unless the file was reopened.
+   subroutine create_group(self, path, description, error)
+      class(hdf5_output_type), intent(inout) :: self
+      character(len=*), intent(in) :: path, description
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+      logical :: failed
+
+      if (self%reopened) then
+         if (self%holds(path)) return
+      end if
+      call make_group(self%id, path, description, failed)
+      if (failed) call self%write_failure(path, error)
+   end subroutine create_group
+
+   !> Whether there is a group or dataset of this path.
+   logical function holds(self, path)
+      class(hdf5_output_type), intent(in) :: self
+      character(len=*), intent(in) :: path
+
+      holds = has_object(self%id, path)
+   end function holds
+
+   !> Takes a group or dataset away, if it is there.
+   subroutine remove(self, path, error)
+      class(hdf5_output_type), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+      logical :: failed
+
+      call remove_object(self%id, path, failed)
+      if (failed) call self%write_failure(path, error)
+   end subroutine remove
+
+   !> Cuts a series back to its first rows.
+   subroutine cut(self, path, n_rows, short, error)
+      class(hdf5_output_type), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      integer(int64), intent(in) :: n_rows
+      logical, intent(out) :: short   !! it has fewer rows, or is not there
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+      integer(hsize_t) :: n_missing
+      logical :: failed
+
+      short = .not. self%holds(path)
+      if (short) return
+      call cut_rows(self%id, path, int(n_rows, hsize_t), n_missing, failed)
+      short = n_missing > 0
+      if (failed) call self%write_failure(path, error)
+   end subroutine cut
+
+   !> Writes a dataset; one of this path is an error unless the file was reopened.
+   subroutine put_values(self, path, description, storage, dims, address, error)
+      class(hdf5_output_type), intent(inout) :: self
+      character(len=*), intent(in) :: path, description
+      type(storage_type), intent(in) :: storage
+      integer(hsize_t), intent(in) :: dims(:)
+      type(c_ptr), intent(in) :: address
+      type(error_type), allocatable, intent(out) :: error
+      logical :: failed
+
+      if (self%reopened) then
+         call self%renew(path, description, storage, dims, address, error)
+         return
+      end if
+      call put_dataset(self%id, path, description, storage, dims, address, failed)
+      if (failed) call self%write_failure(path, error)
+   end subroutine put_values
+
+   !> Writes a dataset in the place of one of this path, if there is one.
+   subroutine renew_values(self, path, description, storage, dims, address, error)
+      class(hdf5_output_type), intent(inout) :: self
+      character(len=*), intent(in) :: path, description
+      type(storage_type), intent(in) :: storage
+      integer(hsize_t), intent(in) :: dims(:)
+      type(c_ptr), intent(in) :: address
+      type(error_type), allocatable, intent(out) :: error
+      logical :: failed, done
+
+      call overwrite_dataset(self%id, path, storage, dims, address, done)
+      if (done) return
+      call self%remove(path, error)
+      if (allocated(error)) return
+      call put_dataset(self%id, path, description, storage, dims, address, failed)
+      if (failed) call self%write_failure(path, error)
+   end subroutine renew_values
+
+   !> Compresses all series made from here on.
+   pure subroutine compress(self, level)
+      class(hdf5_output_type), intent(inout) :: self
+      integer, intent(in) :: level   !! 0, not at all, to 9
+
+      self%deflate = level
+   end subroutine compress
 
    !> The error of something that could not be written; from here on nothing is.
    subroutine write_failure(self, object, error)
