@@ -29,6 +29,8 @@ module stop_request
    real(wp), parameter :: memory = 0.95_wp
    !> An increment may take so many times the longest of the last ones.
    real(wp), parameter :: surprise = 1.5_wp
+   !> Part of the limit, and seconds at most, that are kept for closing files and for other surprises.
+   real(wp), parameter :: reserve = 0.05_wp, most_reserve = 1.0_wp
 
 contains
 
@@ -45,7 +47,8 @@ contains
       self%deck = deck
       self%stem = deck(:dot - 1)
       self%limit = time_limit
-      if (time_limit > 0.0_wp) self%deadline = began + time_limit
+      if (time_limit > 0.0_wp) self%deadline = began + time_limit &
+            - min(reserve*time_limit, most_reserve)
       self%next_look = began
    end subroutine start_watch
 
