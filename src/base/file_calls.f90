@@ -11,7 +11,7 @@ module file_calls
    implicit none
    private
 
-   public :: file_facts_type, look_at, look_at_open, is_same, is_regular, is_folder
+   public :: file_facts_type, look_at, look_at_open, is_same, is_regular, is_device, is_folder
    public :: true_path, folder_of, check_folder, make_folders
    public :: open_to_keep, open_to_read, close_open, try_lock, copy_open, sync_open, sync_folder
    public :: rename_file, remove_file, reserve_blocks, release_blocks, size_limit
@@ -27,7 +27,7 @@ module file_calls
       integer :: n_links = 0                     !! names; 0: removed but still open
    end type file_facts_type
 
-   integer, parameter :: kind_folder = 4, kind_regular = 8   ! the upper four bits of the mode
+   integer, parameter :: kind_device = 2, kind_folder = 4, kind_regular = 8   ! mode/4096
    integer, parameter :: blocked = 11, unsupported(3) = [22, 38, 95]   ! EAGAIN; EINVAL ...
    integer, parameter :: block_length = 2**20
 
@@ -80,6 +80,13 @@ contains
 
       is_regular = facts%exists .and. facts%kind == kind_regular
    end function is_regular
+
+   !> A device that takes characters, as /dev/null.
+   pure logical function is_device(facts)
+      type(file_facts_type), intent(in) :: facts
+
+      is_device = facts%exists .and. facts%kind == kind_device
+   end function is_device
 
    pure logical function is_folder(facts)
       type(file_facts_type), intent(in) :: facts

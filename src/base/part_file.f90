@@ -251,7 +251,8 @@ contains
          reason = ''
          if (to_disk) call sync_open(self%descriptor, reason)
          if (len(reason) == 0) call rename_file(part_path(self), self%path, reason)
-         if (len(reason) > 0) call full_error(self, reason, error)
+         if (len(reason) > 0) call file_error(error, self%shown, reason, 'the results are ' &
+               //'complete in '''//self%shown//part_ending//''': rename it')
          if (to_disk) call sync_folder(folder_of(self%path))
       end if
       call close_open(self%descriptor)

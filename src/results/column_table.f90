@@ -7,7 +7,7 @@
 module column_table
    use errors, only: error_type, new_error, status_internal, status_numerical
    use hdf5_file, only: hdf5_file_type, series_integer, series_real
-   use kinds, only: wp
+   use kinds, only: int64, wp
    use text, only: to_text
    implicit none
    private
@@ -180,6 +180,8 @@ contains
 
       n = self%n_held
       if (n == 0) return
+      call file%reserve(bytes_needed(self, file%deflate > 0), error)
+      if (allocated(error)) return
       do column = 1, self%reals%n
          call file%append(trim(self%reals%paths(column)), self%held_reals(:n, column), error)
          if (allocated(error)) return
@@ -194,6 +196,23 @@ contains
       end do
       self%n_held = 0
    end subroutine flush_rows
+
+   !> Bytes by which the file grows when the rows held are written: the chunks that they begin, and
+   !> their entries in the tables of chunks. A compressed chunk that grows is written anew.
+   pure function bytes_needed(self, compressed) result(bytes)
+      type(column_table_type), intent(in) :: self
+      logical, intent(in) :: compressed
+      integer(int64) :: bytes
+      integer(int64), parameter :: entry = 256, table = 4096
+      integer :: n_chunks
+
+      n_chunks = (self%n_rows + chunk_rows - 1)/chunk_rows &
+            - (self%n_rows - self%n_held + chunk_rows - 1)/chunk_rows
+      if (compressed) n_chunks = n_chunks + 1
+      bytes = n_chunks*((self%reals%n + self%integers%n)*(8_int64*chunk_rows + entry) &
+            + self%texts%n*(int(text_length, int64)*chunk_rows + entry))
+      if (n_chunks > 0) bytes = bytes + table*(self%reals%n + self%integers%n + self%texts%n)
+   end function bytes_needed
 
    !> Allocates the memory for the rows; the columns are fixed from here on.
    subroutine start(self)

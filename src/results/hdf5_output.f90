@@ -14,6 +14,7 @@ module hdf5_output
    use kinds, only: int64, wp
    use errors, only: error_type, new_error, status_file
    use clock, only: seconds_now
+   use file_calls, only: is_regular, look_at
    use part_file, only: part_file_type, claim, publish, finish, discard, reserve_room, is_claimed, &
          has_published, part_path
    use, intrinsic :: iso_c_binding, only: c_ptr
@@ -39,6 +40,7 @@ module hdf5_output
       real(wp) :: started = 0.0_wp
       logical :: broken = .false.                !! the library has failed
       logical :: full = .false.                  !! there was no space for something
+      logical :: saved = .false.                 !! closed, with all that was written
       logical :: reopened = .false.              !! it goes on from what it held
       integer :: deflate = 0                     !! compression of the series
    contains
@@ -51,6 +53,7 @@ module hdf5_output
       procedure :: publish => publish_now
       procedure :: close => close_for_good
       procedure :: drop
+      procedure :: remark
       procedure :: compress
       procedure :: create_group
       procedure :: holds
@@ -112,6 +115,7 @@ contains
       self%started = seconds_now()
       self%broken = .false.
       self%full = .false.
+      self%saved = .false.
       self%reopened = .false.
    end subroutine take_over
 
@@ -187,6 +191,7 @@ contains
          call discard(self%place)
       else
          call finish(self%place, seconds_now() - self%started > worth_waiting, error)
+         self%saved = .true.
       end if
    end subroutine close_for_good
 
@@ -198,6 +203,23 @@ contains
       if (self%is_open()) call shut(self, ignored)
       call discard(self%place)
    end subroutine drop
+
+   !> What a user has to know of the file at the path after a failure; empty if it is as expected.
+   function remark(self) result(words)
+      class(hdf5_output_type), intent(in) :: self
+      character(len=:), allocatable :: words
+
+      words = ''
+      if (self%saved .or. .not. allocated(self%path)) return
+      if (has_published(self%place)) then
+         words = ''''//self%path//''' has the results up to when they were last saved'
+      else if (is_regular(look_at(self%path))) then
+         words = ''''//self%path//''' is still that of an earlier run: nothing of ' &
+               //'this one was saved'
+      else
+         words = 'no results were saved'
+      end if
+   end function remark
 
    !> Closes the file for the library, unless that has failed before.
    subroutine shut(self, error)

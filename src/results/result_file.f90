@@ -302,20 +302,27 @@ contains
       end select
    end function event_name
 
-   !> Brings all that is held in memory into the part file.
+   !> Brings all that is held in memory into the part file; where one table fails for want of space
+   !> another may still fit.
    subroutine flush_results(self, error)
       type(result_file_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error
+      type(error_type), allocatable :: other
 
       call self%grid%grid%flush(self%file, error)
-      if (allocated(error)) return
-      call self%history%table%flush(self%file, error)
-      if (allocated(error)) return
-      if (self%plan%energy) call self%energy%flush(self%file, error)
-      if (allocated(error)) return
-      call self%events%flush(self%file, error)
-      if (allocated(error)) return
+      call self%history%table%flush(self%file, other)
+      call keep_first(error, other)
+      if (self%plan%energy) call self%energy%flush(self%file, other)
+      call keep_first(error, other)
+      call self%events%flush(self%file, other)
+      call keep_first(error, other)
    end subroutine flush_results
+
+   pure subroutine keep_first(error, other)
+      type(error_type), allocatable, intent(inout) :: error, other
+
+      if (allocated(other) .and. .not. allocated(error)) call move_alloc(other, error)
+   end subroutine keep_first
 
    !> Lets others see all results so far.
    subroutine publish_results(self, error)
@@ -346,7 +353,7 @@ contains
       ! what could not be written does not keep the rest from being closed
       if (.not. allocated(error)) call write_cost(self%file, scene, error)
       call self%file%close(close_error)
-      if (allocated(close_error)) call move_alloc(close_error, error)
+      call keep_first(error, close_error)
    end subroutine close_results
 
 end module result_file

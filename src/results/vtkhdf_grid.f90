@@ -184,21 +184,46 @@ contains
       type(field_type), intent(in) :: field
       character(len=*), intent(in) :: description
       type(error_type), allocatable, intent(out) :: error
-      integer :: n_chunks, components
+      integer :: components
 
       if (self%count_frames() > 0) then
          call new_error(error, status_internal, field%data_path//' comes after the first frame')
          return
       end if
-      n_chunks = (field%n + most_rows - 1)/most_rows
       components = size(field%held, 1)
       if (components == 1) components = 0
-      call file%create_series(field%data_path, series_real, components, &
-            max(fewest_rows, (field%n + n_chunks - 1)/max(1, n_chunks)), description, error)
+      call file%create_series(field%data_path, series_real, components, chunk_rows(field), &
+            description, error)
       if (allocated(error)) return
       call file%create_series(field%offset_path, series_integer, 0, most_frames, &
             'where each frame begins in '//field%data_path, error)
    end subroutine create_field
+
+   !> Points or cells that lie together in the file: frames are cut into equal chunks.
+   pure integer function chunk_rows(field)
+      type(field_type), intent(in) :: field
+      integer :: n_chunks
+
+      n_chunks = (field%n + most_rows - 1)/most_rows
+      chunk_rows = max(fewest_rows, (field%n + n_chunks - 1)/max(1, n_chunks))
+   end function chunk_rows
+
+   !> Bytes by which the file grows at most when the gathered frames are written: their data, chunks
+   !> begun, and the tables of chunks.
+   pure function bytes_needed(self) result(bytes)
+      type(vtkhdf_grid_type), intent(in) :: self
+      integer(int64) :: bytes, data
+      integer(int64), parameter :: tables = 8192
+      integer :: i
+
+      bytes = tables*(6 + 2*size(self%fields))
+      do i = 1, size(self%fields)
+         associate (field => self%fields(i))
+            data = 8_int64*size(field%held, 1)*field%n*self%n_held
+            bytes = bytes + data + data/16 + 16_int64*size(field%held, 1)*chunk_rows(field)
+         end associate
+      end do
+   end function bytes_needed
 
    !> No result is infinite, nor NaN but where there is no value.
    subroutine check_finite(self, time, error)
@@ -285,6 +310,8 @@ contains
       integer :: i, last
 
       if (self%n_held == 0) return
+      call file%reserve(bytes_needed(self), error)
+      if (allocated(error)) return
       do i = 1, size(self%fields)
          call append_field(self, file, self%fields(i), error)
          if (allocated(error)) return

@@ -1,7 +1,7 @@
 !> The files that a run writes: their names, and that none of them is one it reads.
 module output_files
    use errors, only: error_type, new_error, status_file
-   use file_calls, only: look_at, is_same
+   use file_calls, only: file_facts_type, look_at, is_device, is_regular, is_same
    use part_file, only: part_file_type, claim
    use places, only: source_type
    use command_line, only: command_type
@@ -33,8 +33,43 @@ contains
             end if
          end do
       end do
+      call check_text(log_stem(command%output)//'.log', 'carom ', command%overwrite, error)
+      if (allocated(error)) return
+      call check_text(log_stem(command%output)//'.sta', '# step', command%overwrite, error)
+      if (allocated(error)) return
       call claim(place, command%output, command%overwrite, error)
    end subroutine claim_output
+
+   !> The log belongs to the results and goes with them: where there are none any more it is
+   !> replaced. A file that no run has written is not.
+   subroutine check_text(path, beginning, overwrite, error)
+      character(len=*), intent(in) :: path
+      character(len=*), intent(in) :: beginning  !! of what a run has written
+      logical, intent(in) :: overwrite
+      type(error_type), allocatable, intent(out) :: error
+      character(len=len(beginning)) :: found
+      type(file_facts_type) :: facts
+      integer :: unit, status
+
+      facts = look_at(path)
+      if (.not. facts%exists) return
+      if (.not. (is_regular(facts) .or. is_device(facts))) then
+         call new_error(error, status_file, 'cannot write '''//path//''': it is a directory, ' &
+               //'pipe or socket'//new_line('a')//'  cure: give the results another name with -o')
+      end if
+      if (allocated(error) .or. overwrite .or. facts%size == 0) return
+      open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
+            action='read', iostat=status)
+      if (status == 0) then
+         read (unit, iostat=status) found
+         close (unit)
+      end if
+      if (status /= 0) found = ''
+      if (found == beginning) return
+      call new_error(error, status_file, 'cannot write '''//path//''': it exists, and no run has ' &
+            //'written it'//new_line('a')//'  cure: --overwrite replaces it; or give the results ' &
+            //'another name with -o')
+   end subroutine check_text
 
    !> The log of OUT.h5 is OUT.log; with any other ending the whole name stays: no two results share
    !> a log.

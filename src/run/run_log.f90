@@ -3,6 +3,7 @@ module run_log
    use, intrinsic :: iso_fortran_env, only: output_unit
    use kinds, only: wp
    use errors, only: error_type
+   use file_calls, only: look_at, look_at_open, is_same
    use text_file, only: text_file_type, open_text, write_line, check_text, close_text
    implicit none
    private
@@ -34,6 +35,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       self%terminal = .not. quiet
+      ! 'carom run deck.inp > deck.log': the log says all that
+      if (is_same(look_at_open(1), look_at(stem//'.log'))) self%terminal = .false.
       call open_text(self%lines, stem//'.log', .false., error)
       if (allocated(error)) return
       call open_text(self%status, stem//'.sta', .false., error)

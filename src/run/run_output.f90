@@ -1,4 +1,4 @@
-!> What a run writes to, and when that is brought to the disk.
+!> What a run writes to, and when others see it.
 module run_output
    use kinds, only: wp, int64
    use errors, only: error_type

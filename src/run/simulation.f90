@@ -1,7 +1,8 @@
 !> The run: deck, scene, files, the steps one after the other, and how it ended.
 module simulation
-   use errors, only: error_type
+   use errors, only: error_type, status_file, status_interrupted
    use stop_signals, only: catch_signals
+   use file_calls, only: ignore_signals
    use part_file, only: part_file_type, check_output, discard
    use cost_account, only: start_clock, enter, leave, phase_read, phase_build, phase_output
    use steps, only: procedure_frequency
@@ -27,6 +28,9 @@ module simulation
 
    public :: run_deck
 
+   !> Signals of Linux: a write that fails says so itself.
+   integer, parameter :: broken_pipe = 13, file_too_large = 25
+
 contains
 
    !> A whole run. Files are made only after the deck has been found sound.
@@ -43,6 +47,7 @@ contains
       associate (cost => simulation%scene%system%cost)
          call start_clock(cost)
          call catch_signals()
+         call ignore_signals([broken_pipe, file_too_large])
          call start_publishing(output%publishing)
          call start_watch(output%watch, command%deck, command%time_limit, output%publishing%last)
          call check_output(command%output, command%overwrite, error)
@@ -70,7 +75,7 @@ contains
       call remove_stop_files(output%watch)
       call end_progress(output%progress)
       call close_results(output%results, simulation%scene, close_error)
-      if (.not. allocated(error) .and. allocated(close_error)) call move_alloc(close_error, error)
+      call merge_errors(error, close_error, output%results%file%remark())
       call report_summary(simulation, output%log)
       if (.not. allocated(error)) call advise_end(lessons, simulation)
       call report_advice(lessons, output%log)
@@ -78,6 +83,21 @@ contains
       call close_log(output%log, close_error)
       if (.not. allocated(error) .and. allocated(close_error)) call move_alloc(close_error, error)
    end subroutine run_deck
+
+   !> What stopped the run, and what became of its results. A file that could not be written is told
+   !> in the words of its closing, which knows how that ended.
+   subroutine merge_errors(error, close_error, remark)
+      type(error_type), allocatable, intent(inout) :: error, close_error
+      character(len=*), intent(in) :: remark     !! on the results, empty for none
+      logical :: superseded
+
+      superseded = .not. allocated(error)
+      if (.not. superseded) superseded = error%status == status_file .or. &
+            error%status == status_interrupted
+      if (superseded .and. allocated(close_error)) call move_alloc(close_error, error)
+      if (.not. allocated(error) .or. len(remark) == 0) return
+      error%message = error%message//new_line('a')//'  results: '//remark
+   end subroutine merge_errors
 
    !> The last line of the log: how the run ended; what a message says beyond its first line, as the
    !> cure, goes before.
