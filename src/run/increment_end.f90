@@ -3,7 +3,6 @@ module increment_end
    use kinds, only: wp
    use errors, only: error_type
    use text, only: to_text
-   use clock, only: keep_pace
    use cost_account, only: next_increment
    use steps, only: step_type
    use energy_ledger, only: close_increment
@@ -11,11 +10,12 @@ module increment_end
    use result_file, only: record_increment
    use run_log, only: log_type, note, write_status, has_line
    use progress, only: show_progress
+   use stop_request, only: keep_watch, stop_if_asked
    use scene_setup, only: simulation_type
    use increment_checks, only: check_finite, check_energies, check_interpolation, check_balance, &
          needs_energies
    use course, only: course_type
-   use run_output, only: output_type, publish_now_and_then, stop_if_asked
+   use run_output, only: output_type, publish_now_and_then
    implicit none
    private
 
@@ -31,7 +31,7 @@ contains
       type(output_type), intent(inout) :: output
       type(error_type), allocatable, intent(out) :: error
 
-      call keep_pace(output%pace)
+      call keep_watch(output%watch)
       call record(simulation, course, output, error)
       if (allocated(error)) return
       call publish_now_and_then(output, simulation%scene%system%cost, error)
@@ -41,7 +41,8 @@ contains
       if (allocated(error)) return
       ! all of the increment is recorded: from here a run can be taken up again
       if (is_last(simulation%model%steps, course)) return
-      call stop_if_asked(output, course%step, course%increment, simulation%motion%motion%t, error)
+      call stop_if_asked(output%watch, course%step, course%increment, &
+            simulation%motion%motion%t, error)
    end subroutine finish_increment
 
    !> Whether the run is over.

@@ -3,7 +3,6 @@
 !> together; the error measured with some foretells that with others.
 module rehearsal
    use kinds, only: wp
-   use clock, only: keep_pace
    use errors, only: error_type, new_error, status_numerical, status_interrupted
    use text, only: to_text, plural
    use mesh, only: scheme_implicit, scheme_explicit
@@ -11,7 +10,7 @@ module rehearsal
    use surfaces, only: method_transformation
    use stability_limit, only: stable_frequency
    use run_log, only: log_type, say
-   use run_output, only: output_type, stop_if_asked
+   use stop_request, only: watch_type, keep_watch, stop_if_asked
    use scene_setup, only: simulation_type
    use increments, only: checkpoint_type, keep_state, put_back
    use twin_motion, only: twins_type, twin_settings_type, start_twins, take_fine_increment, &
@@ -68,10 +67,11 @@ module rehearsal
 contains
 
    !> Chooses the increments of a step; the simulation is then where it was.
-   subroutine rehearse(simulation, i_step, output, plan, error)
+   subroutine rehearse(simulation, i_step, log, watch, plan, error)
       type(simulation_type), intent(inout) :: simulation
       integer, intent(in) :: i_step
-      type(output_type), intent(inout) :: output
+      type(log_type), intent(in) :: log
+      type(watch_type), intent(inout) :: watch
       type(plan_type), intent(out) :: plan
       type(error_type), allocatable, intent(out) :: error
       type(checkpoint_type) :: start
@@ -81,13 +81,13 @@ contains
       call keep_state(simulation, start)
       do while (.not. plan%ready)
          trial%size = plan%size
-         call try_out(simulation, i_step, output, plan, trial, error)
+         call try_out(simulation, i_step, watch, plan, trial, error)
          if (allocated(error)) then
             if (error%status == status_interrupted) call put_back(simulation, start)
             return
          end if
          call put_back(simulation, start)
-         call say(output%log, '  rehearsal: '//plural(trial%n, 'increment')//', estimated error ' &
+         call say(log, '  rehearsal: '//plural(trial%n, 'increment')//', estimated error ' &
                //to_text(estimated_error(trial, plan%base, plan%order), 3))
          call judge(plan, trial)
          if (plan%given .and. wanted_count(plan) > real(plan%most, wp)) then
@@ -141,10 +141,10 @@ contains
    end subroutine set_sizes
 
    !> The step with one size.
-   subroutine try_out(simulation, i_step, output, plan, trial, error)
+   subroutine try_out(simulation, i_step, watch, plan, trial, error)
       type(simulation_type), intent(inout) :: simulation
       integer, intent(in) :: i_step
-      type(output_type), intent(inout) :: output
+      type(watch_type), intent(inout) :: watch
       type(plan_type), intent(inout) :: plan
       type(trial_type), intent(inout) :: trial
       type(error_type), allocatable, intent(out) :: error
@@ -159,8 +159,8 @@ contains
          if (allocated(error)) return
          simulation%scene%n_events = 0
          call compare_twins(twins, simulation)
-         call keep_pace(output%pace)
-         call stop_if_asked(output, i_step, 0, t, error)
+         call keep_watch(watch)
+         call stop_if_asked(watch, i_step, 0, t, error)
          if (allocated(error)) return
          if (twins%n <= plan%most) cycle
          call refuse(plan, real(twins%n, wp), error)

@@ -3,20 +3,22 @@
 module stop_request
    use kinds, only: wp
    use text, only: to_text
-   use clock, only: pace_type
+   use clock, only: pace_type, start_pace, keep_pace
    use errors, only: error_type, new_error, status_interrupted
    use file_calls, only: remove_file
    use stop_signals, only: signal_came, signal_name
    implicit none
    private
 
-   public :: watch_type, start_watch, look_for_stop, remove_stop_files, stop_run
+   public :: watch_type, start_watch, start_looking, keep_watch, stop_if_asked, remove_stop_files
 
-   !> What is looked at, and when.
+   !> What is looked at, and when. One that has not been started sees signals alone.
    type :: watch_type
-      character(len=:), allocatable :: reason    !! to stop, once there is one
+      type(pace_type) :: pace                    !! of the increments
+      real(wp) :: saving = 0.0_wp                !! seconds that writing the state will take
+      character(len=:), allocatable, private :: reason   !! to stop, once there is one
       character(len=:), allocatable, private :: deck, stem   !! path, and that without its ending
-      real(wp), private :: next_look = 0.0_wp    !! for a stop file, on the clock
+      real(wp), private :: next_look = huge(1.0_wp)   !! for a stop file, on the clock
       real(wp), private :: limit = 0.0_wp        !! seconds the run may take, 0: no limit
       real(wp), private :: deadline = huge(1.0_wp)   !! on the clock
       real(wp), private :: longest = 0.0_wp      !! of the last increments, seconds
@@ -29,7 +31,7 @@ module stop_request
    real(wp), parameter :: memory = 0.95_wp
    !> An increment may take so many times the longest of the last ones.
    real(wp), parameter :: surprise = 1.5_wp
-   !> Part of the limit, and seconds at most, that are kept for closing files and for other surprises.
+   !> Part of the limit, and seconds at most, kept for closing files and for other surprises.
    real(wp), parameter :: reserve = 0.05_wp, most_reserve = 1.0_wp
 
 contains
@@ -52,27 +54,54 @@ contains
       self%next_look = began
    end subroutine start_watch
 
-   !> Looks, before an increment, whether it is to be taken: if not, there is a reason from here on.
-   !> A stop file that is obeyed is removed.
-   subroutine look_for_stop(self, pace, saving)
+   !> An increment begins now, or something that is none has ended.
+   subroutine start_looking(self)
       type(watch_type), intent(inout) :: self
-      type(pace_type), intent(in) :: pace        !! of the increments
-      real(wp), intent(in) :: saving             !! seconds that writing the state will take
 
-      if (allocated(self%reason)) return
+      call start_pace(self%pace)
+   end subroutine start_looking
+
+   !> An increment has ended.
+   subroutine keep_watch(self)
+      type(watch_type), intent(inout) :: self
+
+      call keep_pace(self%pace)
+   end subroutine keep_watch
+
+   !> Stops the run between two increments if something asks for it. A stop file that is obeyed is
+   !> removed.
+   subroutine stop_if_asked(self, i_step, increment, t, error)
+      type(watch_type), intent(inout) :: self
+      integer, intent(in) :: i_step, increment   !! the last one taken, 0 for none
+      real(wp), intent(in) :: t                  !! total time
+      type(error_type), allocatable, intent(out) :: error   !! status_interrupted
+      character(len=:), allocatable :: place
+
+      if (.not. allocated(self%reason)) call look_around(self)
+      if (.not. allocated(self%reason)) return
+      place = 'at the start of step '//to_text(i_step)
+      if (increment > 0) place = 'after increment '//to_text(increment)//' of step ' &
+            //to_text(i_step)
+      call new_error(error, status_interrupted, 'interrupted by '//self%reason//' '//place &
+            //', total time '//to_text(t))
+   end subroutine stop_if_asked
+
+   subroutine look_around(self)
+      type(watch_type), intent(inout) :: self
+
       if (signal_came()) then
          self%reason = signal_name()
          return
       end if
-      if (.not. pace%fresh) return
-      self%longest = max(pace%interval, memory*self%longest)
-      if (pace%now + surprise*self%longest + saving >= self%deadline) then
+      if (.not. self%pace%fresh) return
+      self%longest = max(self%pace%interval, memory*self%longest)
+      if (self%pace%now + surprise*self%longest + self%saving >= self%deadline) then
          self%reason = 'the time limit of '//to_text(self%limit)//' s'
-      else if (pace%now >= self%next_look) then
-         self%next_look = pace%now + pause
+      else if (self%pace%now >= self%next_look) then
+         self%next_look = self%pace%now + pause
          call look_for_files(self)
       end if
-   end subroutine look_for_stop
+   end subroutine look_around
 
    subroutine look_for_files(self)
       type(watch_type), intent(inout) :: self
@@ -102,14 +131,5 @@ contains
       call remove_file(self%stem//'.stop')
       call remove_file(self%deck//'.stop')
    end subroutine remove_stop_files
-
-   !> The error with which an interrupted run ends.
-   subroutine stop_run(self, place, error)
-      type(watch_type), intent(in) :: self
-      character(len=*), intent(in) :: place      !! where in the run it stops
-      type(error_type), allocatable, intent(out) :: error
-
-      call new_error(error, status_interrupted, 'interrupted by '//self%reason//' '//place)
-   end subroutine stop_run
 
 end module stop_request
