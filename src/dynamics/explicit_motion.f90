@@ -9,6 +9,7 @@ module explicit_motion
    use prescribed_motion, only: are_at_rest
    use motion_state, only: state_type, exchange
    use cost_account, only: enter, leave, phase_elements
+   use memory_shortage, only: check_allocation
    use equation_of_motion, only: system_type, count_updates
    use energy_ledger, only: ledger_type, record_found
    implicit none
@@ -41,7 +42,7 @@ contains
       type(explicit_motion_type), intent(out) :: self
       type(system_type), intent(in) :: system
       type(state_type), intent(in) :: state
-      integer :: g
+      integer :: g, status
 
       self%ready = .true.
       self%usable = is_explicit(system)
@@ -51,14 +52,17 @@ contains
          self%damped = self%damped .or. size(system%structure%groups(g)%damping) > 0
       end do
       associate (mass => system%structure%lumped_mass)
-         allocate (self%inverse(size(mass)), self%force(size(mass)))
+         allocate (self%inverse(size(mass)), self%force(size(mass)), stat=status)
+         call check_allocation(status)
          where (system%structure%map%prescribed .or. .not. mass > 0.0_wp)
             self%inverse = 0.0_wp
          else where
             self%inverse = 1.0_wp/mass
          end where
-         allocate (self%load(merge(size(mass), 0, size(system%loads%loads) > 0)))
-         allocate (self%change(merge(size(mass), 0, self%damped)))
+         allocate (self%load(merge(size(mass), 0, size(system%loads%loads) > 0)), stat=status)
+         call check_allocation(status)
+         allocate (self%change(merge(size(mass), 0, self%damped)), stat=status)
+         call check_allocation(status)
       end associate
       if (size(self%load) > 0) self%load = load_at(system%loads, size(self%load), state%t)
       self%history = state%history

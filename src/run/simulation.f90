@@ -4,7 +4,6 @@ module simulation
    use clock, only: seconds_now
    use cost_account, only: start_clock, enter, leave, phase_read, phase_build, phase_output
    use steps, only: procedure_frequency
-   use deck_reader, only: read_deck
    use result_file, only: open_results, close_results
    use command_line, only: command_type
    use run_log, only: log_type, open_log, close_log, say
@@ -13,7 +12,7 @@ module simulation
    use frequency_run, only: run_frequency_step
    use scene_advice, only: advice_list_type, advise_end
    use feature_report, only: report_advice
-   use deck_check, only: prepare, report_preview
+   use deck_check, only: read_model, prepare, report_preview
    use run_report, only: report_model, report_notes, report_summary
    use time_loop, only: output_type, run_step
    implicit none
@@ -37,7 +36,7 @@ contains
          call start_clock(cost)
          output%last_flush = seconds_now()
          call enter(cost, phase_read, outer)
-         call read_deck(simulation%model, command%deck, command%definitions, error)
+         call read_model(simulation%model, command, output%preview, error)
          call leave(cost, outer)
          if (allocated(error)) return
          call enter(cost, phase_build, outer)
