@@ -6,7 +6,6 @@ module simulation
    use part_file, only: part_file_type, check_output, discard
    use cost_account, only: start_clock, enter, leave, phase_read, phase_build, phase_output
    use steps, only: procedure_frequency
-   use deck_reader, only: read_deck
    use result_file, only: open_results, close_results
    use command_line, only: command_type
    use output_files, only: claim_output, log_stem
@@ -18,7 +17,7 @@ module simulation
    use frequency_run, only: run_frequency_step
    use scene_advice, only: advice_list_type, advise_end
    use feature_report, only: report_advice
-   use deck_check, only: prepare, report_preview
+   use deck_check, only: read_model, prepare, report_preview
    use run_report, only: report_model, report_notes, report_summary
    use course, only: course_type, begin_course
    use run_output, only: output_type
@@ -53,7 +52,7 @@ contains
          call check_output(command%output, command%overwrite, error)
          if (allocated(error)) return
          call enter(cost, phase_read, outer)
-         call read_deck(simulation%model, command%deck, command%definitions, error)
+         call read_model(simulation%model, command, output%preview, error)
          call leave(cost, outer)
          if (allocated(error)) return
          call enter(cost, phase_build, outer)
