@@ -83,6 +83,7 @@ contains
       call report_end(output%log, error)
       call close_log(output%log, close_error)
       if (.not. allocated(error) .and. allocated(close_error)) call move_alloc(close_error, error)
+      call simulation%scene%system%matrices%release()
    end subroutine run_deck
 
    !> What stopped the run, and what became of its results. A file that could not be written is told
