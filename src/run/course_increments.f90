@@ -112,6 +112,7 @@ contains
       course%increment = course%increment + 1
       course%step_time = step_time
       course%dt = dt
+      course%duration = simulation%model%steps(course%step)%duration
       simulation%motion%motion%t = course%t_start + step_time
    end subroutine count_increment
 

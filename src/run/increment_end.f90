@@ -19,7 +19,7 @@ module increment_end
    implicit none
    private
 
-   public :: finish_increment, stop_if_asked
+   public :: finish_increment, stop_if_asked, count_events
 
 contains
 
@@ -27,7 +27,7 @@ contains
    !> counts it.
    subroutine finish_increment(simulation, course, output, error)
       type(simulation_type), intent(inout) :: simulation
-      type(course_type), intent(in) :: course
+      type(course_type), intent(inout) :: course
       type(output_type), intent(inout) :: output
       type(error_type), allocatable, intent(out) :: error
 

@@ -3,6 +3,7 @@
 !> together; the error measured with some foretells that with others.
 module rehearsal
    use kinds, only: wp
+   use state_archive, only: archive_type
    use errors, only: error_type, new_error, status_numerical, status_interrupted
    use text, only: to_text, plural
    use mesh, only: scheme_implicit, scheme_explicit
@@ -25,6 +26,8 @@ module rehearsal
       real(wp) :: size = 1.0_wp                  !! of all increments, 1 in the first rehearsal
       real(wp) :: difference = 0.0_wp            !! of both motions, of the largest displacement
       integer :: n = 0                           !! increments
+   contains
+      procedure :: pass_state => pass_trial
    end type trial_type
 
    !> What is asked of a step and how far it has been found out.
@@ -41,6 +44,8 @@ module rehearsal
       real(wp) :: order = 2.0_wp                 !! of the error in the size
       logical :: ready = .false.                 !! the next run is the real one
       integer :: n_rehearsals = 0
+   contains
+      procedure :: pass_state => pass_plan
    end type plan_type
 
    real(wp), parameter :: default_tolerance = 1.0e-3_wp
@@ -65,6 +70,41 @@ module rehearsal
    real(wp), parameter :: default_least = 1.0_wp/32.0_wp
 
 contains
+
+   !> All of it.
+   subroutine pass_trial(self, archive)
+      class(trial_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call archive%pass('size', self%size)
+      call archive%pass('difference', self%difference)
+      call archive%pass('n', self%n)
+   end subroutine pass_trial
+
+   !> All of it.
+   subroutine pass_plan(self, archive)
+      class(plan_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call archive%pass('asked', self%asked)
+      call archive%pass('given', self%given)
+      call archive%pass('most', self%most)
+      call archive%pass('dt', self%dt)
+      call archive%pass('local_tolerance', self%local_tolerance)
+      call archive%pass('size', self%size)
+      call archive%pass('order', self%order)
+      call archive%pass('ready', self%ready)
+      call archive%pass('n_rehearsals', self%n_rehearsals)
+      call archive%enter('settings')
+      call self%settings%pass_state(archive)
+      call archive%leave()
+      call archive%enter('last')
+      call self%last%pass_state(archive)
+      call archive%leave()
+      call archive%enter('base')
+      call self%base%pass_state(archive)
+      call archive%leave()
+   end subroutine pass_plan
 
    !> Chooses the increments of a step; the simulation is then where it was.
    subroutine rehearse(simulation, i_step, log, watch, plan, error)
