@@ -1,9 +1,9 @@
-!> An HDF5 file from its making to its closing, its groups, and datasets by their addresses; hdf5_file
-!> gives them types.
+!> An HDF5 file from its making to its closing, its groups, and datasets by their addresses;
+!> hdf5_file gives them types.
 !>
-!> A file that is reopened (`modify_claimed`) is made again by the same calls as a new one: groups and
-!> series that are there stay, datasets and attributes are written anew, in their old place where
-!> they fit.
+!> A file that is reopened (`modify_claimed`) is made again by the same calls as a new one: groups
+!> and series that are there stay, datasets and attributes are written anew, in their old place
+!> where they fit.
 !>
 !> It is written aside (part_file): what others see is what was published last, complete and
 !> closed. Before data are written, `reserve` has the disk set their space aside. So a full disk is
@@ -15,8 +15,8 @@ module hdf5_output
    use errors, only: error_type, new_error, status_file
    use clock, only: seconds_now
    use file_calls, only: is_regular, look_at
-   use part_file, only: part_file_type, claim, publish, finish, discard, reserve_room, is_claimed, &
-         has_published, part_path
+   use part_file, only: part_file_type, claim, publish, finish, discard, reserve_room, forget_room, &
+         is_claimed, has_published, part_path
    use, intrinsic :: iso_c_binding, only: c_ptr
    use hdf5_calls, only: hsize_t, make_group, put_dataset, storage_type
    use hdf5_changes, only: cut_rows, has_object, overwrite_dataset, remove_object
@@ -87,7 +87,13 @@ contains
       logical :: failed
 
       call take_over(self, place, path)
+      call reserve_room(self%place, margin, error)
+      if (allocated(error)) then
+         call discard(self%place)
+         return
+      end if
       call create_file(part_path(place), self%id, failed)
+      call forget_room(self%place)   ! the library has cut the file
       call begin(self, failed, error)
    end subroutine create_claimed
 

@@ -27,8 +27,8 @@ contains
 
       call reader%read_texts('/restart/deck/files', definition_length, files, error)
       if (.not. allocated(error)) call reader%read_dataset('/restart/deck/lines', n_lines, error)
-      if (.not. allocated(error)) call reader%read_texts('/restart/deck/definitions', definition_length, &
-            definitions, error)
+      if (.not. allocated(error)) call reader%read_texts('/restart/deck/definitions', &
+            definition_length, definitions, error)
       if (.not. allocated(error)) call reader%read_text('/model/deck', text, error)
       sound = .not. allocated(error)
       if (sound) sound = size(files) == size(n_lines)
@@ -45,7 +45,8 @@ contains
       end if
       if (allocated(error)) deallocate (error)
       if (.not. sound) call new_error(error, status_file, 'the deck in '''//path//''' is damaged' &
-            //new_line('a')//'  cure: go on from a copy of the file, or run the deck from its start')
+            //new_line('a')//'  cure: go on from a copy of the file, or run the deck from its ' &
+            //'start')
    end subroutine read_restart_deck
 
    subroutine take_file(source, i, name, text)

@@ -45,7 +45,7 @@ module restart_start
 
 contains
 
-   !> Reads the state that the command names; sees that the deck is still the same as far as it must.
+   !> Reads the state that the command names; sees that the deck is the same as far as it must be.
    subroutine read_restart(self, command, model, error)
       type(restart_type), intent(out) :: self
       type(command_type), intent(in) :: command

@@ -10,7 +10,8 @@ module run_log
    implicit none
    private
 
-   public :: log_type, open_log, continue_log, check_log, close_log, say, note, write_status, has_line
+   public :: log_type, open_log, continue_log, check_log, close_log, say, note, write_status, &
+         has_line
 
    !> Where lines go. Without files (a mere check), to the terminal alone.
    type :: log_type

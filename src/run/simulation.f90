@@ -1,26 +1,28 @@
 !> The run: deck, scene, files, the steps one after the other, and how it ended.
 module simulation
-   use errors, only: error_type, status_file
+   use errors, only: error_type, status_file, status_interrupted
+   use text, only: to_text
+   use stop_signals, only: catch_signals
    use file_calls, only: ignore_signals
    use part_file, only: check_output
    use cost_account, only: start_clock, enter, leave, phase_read, phase_build, phase_output
    use steps, only: procedure_frequency
-   use deck_reader, only: read_deck
    use result_file, only: close_results
    use command_line, only: command_type
    use publishing, only: start_publishing
    use run_log, only: log_type, close_log, say
+   use stop_request, only: start_watch, start_looking, look_for_stop, stop_run, remove_stop_files
    use progress, only: start_progress, end_progress
    use scene_setup, only: simulation_type, initial_motion
    use frequency_run, only: run_frequency_step
    use scene_advice, only: advice_list_type, advise_end
    use feature_report, only: report_advice
-   use deck_check, only: prepare, report_preview
+   use deck_check, only: read_model, prepare, report_preview
    use run_report, only: report_model, report_notes, report_summary
    use course, only: course_type, begin_course
    use run_output, only: output_type
    use run_state, only: restore_state
-   use state_keeping, only: keep_before_step, keep_at_end
+   use state_keeping, only: keep_before_step, keep_at_end, keep_if_interrupted
    use restart_start, only: restart_type, read_restart, is_finished, open_outputs, begin_again
    use time_loop, only: run_step
    implicit none
@@ -47,13 +49,15 @@ contains
 
       associate (cost => simulation%scene%system%cost)
          call start_clock(cost)
+         call catch_signals()
          call ignore_signals([broken_pipe, file_too_large])
          call start_publishing(output%publishing)
+         call start_watch(output%watch, command%deck, command%time_limit, output%publishing%last)
          if (.not. allocated(command%restart)) call check_output(command%output, &
                command%overwrite, error)
          if (allocated(error)) return
          call enter(cost, phase_read, outer)
-         call read_deck(simulation%model, command%deck, command%definitions, error)
+         call read_model(simulation%model, command, output%preview, error)
          if (.not. allocated(error)) call read_restart(restart, command, simulation%model, error)
          call leave(cost, outer)
          if (allocated(error)) return
@@ -76,6 +80,8 @@ contains
       end associate
       if (allocated(error)) return
       call run_steps(simulation, command, restart, course, output, error)
+      call keep_if_interrupted(simulation, course, output, error)
+      call remove_stop_files(output%watch)
       call end_progress(output%progress)
       call close_results(output%results, simulation%scene, close_error)
       call merge_errors(error, close_error, output%results%file%remark())
@@ -85,6 +91,7 @@ contains
       call report_end(output%log, error)
       call close_log(output%log, close_error)
       if (.not. allocated(error) .and. allocated(close_error)) call move_alloc(close_error, error)
+      call simulation%scene%system%matrices%release()
    end subroutine run_deck
 
    !> What stopped the run, and what became of its results. A file that could not be written is told
@@ -95,7 +102,8 @@ contains
       logical :: superseded
 
       superseded = .not. allocated(error)
-      if (.not. superseded) superseded = error%status == status_file
+      if (.not. superseded) superseded = error%status == status_file .or. &
+            error%status == status_interrupted
       if (superseded .and. allocated(close_error)) call move_alloc(close_error, error)
       if (.not. allocated(error) .or. len(remark) == 0) return
       error%message = error%message//new_line('a')//'  results: '//remark
@@ -152,7 +160,7 @@ contains
          end if
          if (i > course%step) call begin_course(course, i, simulation%motion%motion%t)
          if (simulation%model%steps(i)%procedure == procedure_frequency) then
-            call run_frequency_step(simulation, i, output%results, output%log, error)
+            call do_frequency_step(simulation, course, output, error)
          else
             call run_step(simulation, course, output, error)
          end if
@@ -160,5 +168,24 @@ contains
       end do
       call keep_at_end(simulation, course, output, error)
    end subroutine run_steps
+
+   !> A frequency step, which is finished once it has begun.
+   subroutine do_frequency_step(simulation, course, output, error)
+      type(simulation_type), intent(inout) :: simulation
+      type(course_type), intent(inout) :: course
+      type(output_type), intent(inout) :: output
+      type(error_type), allocatable, intent(out) :: error
+      logical :: asked
+
+      if (course%entered) return
+      call run_frequency_step(simulation, course%step, output%results, output%log, error)
+      if (allocated(error)) return
+      course%entered = .true.
+      if (course%step == size(simulation%model%steps)) return
+      call start_looking(output%watch)
+      call look_for_stop(output%watch, asked)
+      if (asked) call stop_run(output%watch, 'after step '//to_text(course%step), &
+            simulation%motion%motion%t, error)
+   end subroutine do_frequency_step
 
 end module simulation

@@ -1,7 +1,7 @@
 !> Keeps the state of a run in its results, for --restart to go on from.
 module state_keeping
    use kinds, only: wp
-   use errors, only: error_type
+   use errors, only: error_type, status_interrupted
    use clock, only: seconds_now
    use cost_account, only: enter, leave, phase_output
    use state_archive, only: archive_type
@@ -10,18 +10,18 @@ module state_keeping
    use result_extents, only: extents_type, measure_results
    use publishing, only: is_due, publish_now
    use scene_setup, only: simulation_type
-   use course, only: course_type, is_fresh
+   use course, only: course_type
    use run_state, only: collect_state
    use run_output, only: output_type, publish_now_and_then
    implicit none
    private
 
-   public :: keep_restart_state, publish_increment, keep_before_step, keep_at_end
+   public :: keep_restart_state, publish_increment, keep_before_step, keep_at_end, &
+         keep_if_interrupted
 
 contains
 
-   !> Writes the state into the results, where it is published with them. At the start of a step
-   !> there is none to be kept: the one at the end of the step before stays, if there was one.
+   !> Writes the state into the results, where it is published with them.
    subroutine keep_restart_state(simulation, course, output, error)
       type(simulation_type), intent(inout) :: simulation   !! as it was
       type(course_type), intent(inout) :: course           !! as it was
@@ -31,7 +31,7 @@ contains
       type(extents_type) :: extents
       integer :: outer
 
-      if (is_fresh(course)) return
+      if (.not. course%entered) return
       associate (cost => simulation%scene%system%cost)
          call enter(cost, phase_output, outer, .true.)
          call flush_results(output%results, error)
@@ -73,6 +73,20 @@ contains
          end if
       end associate
    end subroutine publish_increment
+
+   !> A run that is interrupted always keeps its state.
+   subroutine keep_if_interrupted(simulation, course, output, error)
+      type(simulation_type), intent(inout) :: simulation
+      type(course_type), intent(inout) :: course
+      type(output_type), intent(inout) :: output
+      type(error_type), allocatable, intent(inout) :: error   !! why the run ends, if it fails
+      type(error_type), allocatable :: write_error
+
+      if (.not. allocated(error)) return
+      if (error%status /= status_interrupted) return
+      call keep_restart_state(simulation, course, output, write_error)
+      if (allocated(write_error)) call move_alloc(write_error, error)
+   end subroutine keep_if_interrupted
 
    !> What was put off, at the end of a step behind which no state can be kept.
    subroutine keep_before_step(simulation, course, output, error)

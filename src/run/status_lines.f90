@@ -20,10 +20,12 @@ contains
       character(len=longest) :: line
       integer :: unit, status, n
 
-      allocate (character(len=65536) :: lines)
       n = 0
+      lines = ''
       open (newunit=unit, file=path, status='old', action='read', iostat=status)
-      do while (status == 0)
+      if (status /= 0) return
+      lines = repeat(' ', 65536)
+      do
          read (unit, '(a)', iostat=status) line
          if (status /= 0) exit
          if (.not. is_wanted(line, step, increment, with_last)) cycle
@@ -34,7 +36,7 @@ contains
          lines(n + 1:n + len_trim(line) + 1) = trim(line)//new_line('a')
          n = n + len_trim(line) + 1
       end do
-      close (unit, iostat=status)
+      close (unit)
       lines = lines(:n)
    end subroutine read_status_lines
 
