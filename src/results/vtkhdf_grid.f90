@@ -6,6 +6,7 @@
 !> left, and must be called before the file is closed. The data are written first and the number
 !> of frames last: whatever happens in between, a reader finds the frames before.
 module vtkhdf_grid
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_is_nan
    use errors, only: error_type, new_error, status_internal, status_numerical
    use hdf5_file, only: hdf5_file_type, series_integer, series_real
    use kinds, only: int64, wp
@@ -226,9 +227,10 @@ contains
       logical :: sound
 
       if (partial) then
-         sound = .not. any(abs(values) > huge(1.0_wp))
+         ! to compare a NaN is an invalid operation, to ask for one is not
+         sound = all(ieee_is_finite(values) .or. ieee_is_nan(values))
       else
-         sound = all(abs(values) <= huge(1.0_wp))
+         sound = all(ieee_is_finite(values))
       end if
    end function is_sound
 
