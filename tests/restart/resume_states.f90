@@ -34,7 +34,7 @@ program resume_states
    call resume_all()
    write (output_unit, '(a)') to_text(size(wanted))//' increments, '//to_text(count(wanted)) &
          //' states, '//to_text(n_bad)//' differences'
-   if (n_bad > 0) error stop 1
+   if (n_bad > 0) stop 1
 
 contains
 
@@ -76,7 +76,7 @@ contains
          ends = [ends, run%course%step_time >= run%simulation%model%steps(run%course%step)%duration]
       end do
       n = size(ends)
-      if (n == 0) error stop 'the run has no increments'
+      if (n == 0) stop 'the run has no increments'
       wanted = ends
       wanted([1, min(2, n), n]) = .true.
       do i = 1, n_places
@@ -154,7 +154,7 @@ contains
 
       if (.not. allocated(error)) return
       write (output_unit, '(a)') error%message
-      error stop 1
+      stop 1
    end subroutine must_be_sound
 
 end program resume_states
