@@ -2,6 +2,7 @@
 module source_reader
    use, intrinsic :: iso_fortran_env, only: int64
    use errors, only: error_type, new_error, status_file
+   use file_calls, only: file_facts_type, look_at, is_regular
    use places, only: source_type, source_file_type, source_line_type, place_type, fail_at
    use places, only: new_source_file
    implicit none
@@ -13,13 +14,18 @@ module source_reader
 
 contains
 
-   !> Reads a file and appends it to the source; a byte that is no text is an error.
+   !> Reads a file and appends it to the source, which may know its text already; a byte that is no
+   !> text is an error.
    subroutine add_file(source, path, error)
       type(source_type), intent(inout) :: source
       character(len=*), intent(in) :: path
       type(error_type), allocatable, intent(out) :: error   !! status_file if it cannot be read
       character(len=:), allocatable :: content
 
+      if (source%n_files < source%n_stored) then
+         source%n_files = source%n_files + 1
+         return
+      end if
       call read_content(path, content, error)
       if (allocated(error)) return
       call make_room(source)
@@ -35,14 +41,23 @@ contains
       type(error_type), allocatable, intent(out) :: error
       character(len=*), parameter :: byte_order_mark = char(239)//char(187)//char(191)
       character(len=200) :: reason
+      type(file_facts_type) :: facts
       integer(int64) :: length
       integer :: unit, status
 
+      facts = look_at(path)
+      if (facts%exists .and. .not. is_regular(facts)) then
+         ! reading a pipe could wait for ever
+         call new_error(error, status_file, 'cannot read '''//path//''': it is a directory, ' &
+               //'pipe or device'//new_line('a')//'  cure: save the deck in a file')
+         return
+      end if
       open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
             action='read', iostat=status, iomsg=reason)
       if (status /= 0) then
          call new_error(error, status_file, "cannot open '"//path//"':"// &
-               trim(reason(index(reason, ': ', back=.true.) + 1:)))
+               trim(reason(index(reason, ': ', back=.true.) + 1:))//new_line('a')// &
+               '  cure: check the name, and that the file may be read')
          return
       end if
       inquire (unit=unit, size=length)

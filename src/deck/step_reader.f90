@@ -12,6 +12,7 @@ module step_reader
    use condition_reader, only: read_boundaries, read_initial_conditions, read_loads
    use request_reader, only: read_requests
    use load_reader, only: read_distributed, read_base_motions
+   use restart_reader, only: read_restarts
    use order_reader, only: check_one_order
    use dynamic_reader, only: read_dynamic
    use words, only: word_length, find_word
@@ -35,6 +36,7 @@ contains
          call read_step(model, s, deck, error)
          if (allocated(error)) return
       end do
+      call read_restarts(model, deck, error)
    end subroutine read_steps
 
    subroutine read_step(model, s, deck, error)

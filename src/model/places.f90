@@ -36,6 +36,7 @@ module places
    type :: source_type
       type(source_file_type), allocatable :: files(:)
       integer :: n_files = 0
+      integer :: n_stored = 0   !! files whose text is here before they are read, in their order
    end type source_type
 
 contains

@@ -7,7 +7,7 @@
 module column_table
    use errors, only: error_type, new_error, status_internal, status_numerical
    use hdf5_file, only: hdf5_file_type, series_integer, series_real
-   use kinds, only: wp
+   use kinds, only: int64, wp
    use text, only: to_text
    implicit none
    private
@@ -53,7 +53,7 @@ contains
    !> Makes the group of the table.
    subroutine create(self, file, group, description, error)
       class(column_table_type), intent(out) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       character(len=*), intent(in) :: group   !! '/energy', say
       character(len=*), intent(in) :: description
       type(error_type), allocatable, intent(out) :: error   !! status_file
@@ -65,7 +65,7 @@ contains
    !> Adds a column of reals; only before the first row.
    subroutine add_column(self, file, path, description, error, partial)
       class(column_table_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       character(len=*), intent(in) :: path   !! in the group: 'time', 'node_5/U1'
       character(len=*), intent(in) :: description
       type(error_type), allocatable, intent(out) :: error   !! status_file
@@ -82,7 +82,7 @@ contains
    !> Adds a column of integers; only before the first row.
    subroutine add_integer_column(self, file, path, description, error)
       class(column_table_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       character(len=*), intent(in) :: path, description
       type(error_type), allocatable, intent(out) :: error   !! status_file
 
@@ -96,7 +96,7 @@ contains
    !> Adds a column of texts of at most `length` (and 80) characters; only before the first row.
    subroutine add_text_column(self, file, path, length, description, error)
       class(column_table_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       character(len=*), intent(in) :: path, description
       integer, intent(in) :: length
       type(error_type), allocatable, intent(out) :: error   !! status_file
@@ -117,7 +117,7 @@ contains
    !> Appends a row to a table of reals.
    subroutine append_reals(self, file, values, error)
       class(column_table_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       real(wp), intent(in) :: values(:)
       type(error_type), allocatable, intent(out) :: error   !! status_file
 
@@ -127,7 +127,7 @@ contains
    !> Appends a row to a table of several kinds of columns.
    subroutine append_mixed(self, file, values, integers, texts, error)
       class(column_table_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       real(wp), intent(in) :: values(:)
       integer, intent(in) :: integers(:)
       character(len=*), intent(in) :: texts(:)
@@ -174,12 +174,14 @@ contains
    !> Writes the rows held in memory, column by column.
    subroutine flush_rows(self, file, error)
       class(column_table_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(error_type), allocatable, intent(out) :: error   !! status_file
       integer :: column, n
 
       n = self%n_held
       if (n == 0) return
+      call file%reserve(bytes_needed(self, file%deflate > 0), error)
+      if (allocated(error)) return
       do column = 1, self%reals%n
          call file%append(trim(self%reals%paths(column)), self%held_reals(:n, column), error)
          if (allocated(error)) return
@@ -194,6 +196,23 @@ contains
       end do
       self%n_held = 0
    end subroutine flush_rows
+
+   !> Bytes by which the file grows when the rows held are written: the chunks that they begin, and
+   !> their entries in the tables of chunks. A compressed chunk that grows is written anew.
+   pure function bytes_needed(self, compressed) result(bytes)
+      type(column_table_type), intent(in) :: self
+      logical, intent(in) :: compressed
+      integer(int64) :: bytes
+      integer(int64), parameter :: entry = 256, table = 4096
+      integer :: n_chunks
+
+      n_chunks = (self%n_rows + chunk_rows - 1)/chunk_rows &
+            - (self%n_rows - self%n_held + chunk_rows - 1)/chunk_rows
+      if (compressed) n_chunks = n_chunks + 1
+      bytes = n_chunks*((self%reals%n + self%integers%n)*(8_int64*chunk_rows + entry) &
+            + self%texts%n*(int(text_length, int64)*chunk_rows + entry))
+      if (n_chunks > 0) bytes = bytes + table*(self%reals%n + self%integers%n + self%texts%n)
+   end function bytes_needed
 
    !> Allocates the memory for the rows; the columns are fixed from here on.
    subroutine start(self)

@@ -55,7 +55,7 @@ contains
    !> triangle and quadrilateral.
    subroutine create(self, file, points, types, connectivity, offsets, error)
       class(vtkhdf_grid_type), intent(out) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       real(wp), contiguous, intent(in) :: points(:, :)       !! (3, n_points)
       integer, contiguous, intent(in) :: types(:)            !! (n_cells)
       integer, contiguous, intent(in) :: connectivity(:)     !! points of the cells, counted from 0
@@ -91,7 +91,7 @@ contains
    end subroutine create
 
    subroutine write_count(file, name, number, error)
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       character(len=*), intent(in) :: name
       integer, intent(in) :: number
       type(error_type), allocatable, intent(out) :: error
@@ -103,7 +103,7 @@ contains
 
    !> Makes the group with one entry a frame.
    subroutine create_steps(file, error)
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(error_type), allocatable, intent(out) :: error
 
       call file%create_group(root//'/Steps', 'the frames', error)
@@ -118,7 +118,7 @@ contains
    end subroutine create_steps
 
    subroutine create_step_list(file, name, n_components, error)
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       character(len=*), intent(in) :: name
       integer, intent(in) :: n_components
       type(error_type), allocatable, intent(out) :: error
@@ -130,7 +130,7 @@ contains
    !> Adds a quantity at the points; only before the first frame.
    subroutine add_point_field(self, file, name, n_components, description, field, error, partial)
       class(vtkhdf_grid_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       character(len=*), intent(in) :: name, description
       integer, intent(in) :: n_components   !! 1 scalar, 3 vector, 6 symmetric tensor
       integer, intent(out) :: field         !! its number, for `set_values`
@@ -145,7 +145,7 @@ contains
    !> Adds a quantity of the cells; only before the first frame.
    subroutine add_cell_field(self, file, name, n_components, description, field, error)
       class(vtkhdf_grid_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       character(len=*), intent(in) :: name, description
       integer, intent(in) :: n_components   !! 1 scalar, 3 vector, 6 symmetric tensor
       integer, intent(out) :: field         !! its number, for `set_values`
@@ -180,25 +180,50 @@ contains
    !> Makes the datasets of a field in the file.
    subroutine create_field(self, file, field, description, error)
       type(vtkhdf_grid_type), intent(in) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(field_type), intent(in) :: field
       character(len=*), intent(in) :: description
       type(error_type), allocatable, intent(out) :: error
-      integer :: n_chunks, components
+      integer :: components
 
       if (self%count_frames() > 0) then
          call new_error(error, status_internal, field%data_path//' comes after the first frame')
          return
       end if
-      n_chunks = (field%n + most_rows - 1)/most_rows
       components = size(field%held, 1)
       if (components == 1) components = 0
-      call file%create_series(field%data_path, series_real, components, &
-            max(fewest_rows, (field%n + n_chunks - 1)/max(1, n_chunks)), description, error)
+      call file%create_series(field%data_path, series_real, components, chunk_rows(field), &
+            description, error)
       if (allocated(error)) return
       call file%create_series(field%offset_path, series_integer, 0, most_frames, &
             'where each frame begins in '//field%data_path, error)
    end subroutine create_field
+
+   !> Points or cells that lie together in the file: frames are cut into equal chunks.
+   pure integer function chunk_rows(field)
+      type(field_type), intent(in) :: field
+      integer :: n_chunks
+
+      n_chunks = (field%n + most_rows - 1)/most_rows
+      chunk_rows = max(fewest_rows, (field%n + n_chunks - 1)/max(1, n_chunks))
+   end function chunk_rows
+
+   !> Bytes by which the file grows at most when the gathered frames are written: their data, chunks
+   !> begun, and the tables of chunks.
+   pure function bytes_needed(self) result(bytes)
+      type(vtkhdf_grid_type), intent(in) :: self
+      integer(int64) :: bytes, data
+      integer(int64), parameter :: tables = 8192
+      integer :: i
+
+      bytes = tables*(6 + 2*size(self%fields))
+      do i = 1, size(self%fields)
+         associate (field => self%fields(i))
+            data = 8_int64*size(field%held, 1)*field%n*self%n_held
+            bytes = bytes + data + data/16 + 16_int64*size(field%held, 1)*chunk_rows(field)
+         end associate
+      end do
+   end function bytes_needed
 
    !> No result is infinite, nor NaN but where there is no value.
    subroutine check_finite(self, time, error)
@@ -257,7 +282,7 @@ contains
    !> Makes a frame of the fields as they were handed over.
    subroutine append_frame(self, file, time, error)
       class(vtkhdf_grid_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       real(wp), intent(in) :: time   !! or whatever orders the frames, e.g. a frequency
       !> status_file; status_numerical: a value that is not finite
       type(error_type), allocatable, intent(out) :: error
@@ -280,11 +305,13 @@ contains
    !> Writes the gathered frames: data, entries in the lists, at last their number.
    subroutine flush_frames(self, file, error)
       class(vtkhdf_grid_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(error_type), allocatable, intent(out) :: error   !! status_file
       integer :: i, last
 
       if (self%n_held == 0) return
+      call file%reserve(bytes_needed(self), error)
+      if (allocated(error)) return
       do i = 1, size(self%fields)
          call append_field(self, file, self%fields(i), error)
          if (allocated(error)) return
@@ -292,8 +319,6 @@ contains
       call append_steps(self, file, error)
       if (allocated(error)) return
       call file%set_attribute(root//'/Steps', 'NSteps', self%count_frames(), error)
-      if (allocated(error)) return
-      call file%flush(error)
       if (allocated(error)) return
       last = min(self%n_held, size(self%times) - 1)
       do i = 1, size(self%fields)
@@ -305,7 +330,7 @@ contains
 
    subroutine append_field(self, file, field, error)
       type(vtkhdf_grid_type), intent(in) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(field_type), intent(in) :: field
       type(error_type), allocatable, intent(out) :: error
       integer(int64) :: begin(self%n_held)
@@ -321,7 +346,7 @@ contains
 
    subroutine append_steps(self, file, error)
       type(vtkhdf_grid_type), intent(in) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(error_type), allocatable, intent(out) :: error
       character(len=*), parameter :: steps = root//'/Steps/'
       integer, dimension(self%n_held) :: zero, one

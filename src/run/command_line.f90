@@ -217,11 +217,31 @@ contains
          call usage_error(error, 'no deck given')
          return
       end if
-      if (allocated(command%output)) return
+      if (allocated(command%output)) then
+         call check_ending(command%output, error)
+         return
+      end if
       dot = index(command%deck, '.', back=.true.)
       if (dot <= index(command%deck, '/', back=.true.) + 1) dot = len(command%deck) + 1
       command%output = command%deck(:dot - 1)//'.h5'
    end subroutine complete
+
+   !> Results have a name of their own kind: no slip of the pen makes them replace a deck or a log.
+   subroutine check_ending(path, error)
+      character(len=*), intent(in) :: path
+      type(error_type), allocatable, intent(out) :: error
+      character(len=*), parameter :: endings(*) = ['.h5    ', '.hdf5  ', '.hdf   ', '.vtkhdf']
+      character(len=:), allocatable :: name
+      integer :: i
+
+      name = path(index(path, '/', back=.true.) + 1:)
+      do i = 1, size(endings)
+         if (len(name) <= len_trim(endings(i))) cycle
+         if (name(len(name) - len_trim(endings(i)) + 1:) == endings(i)) return
+      end do
+      call usage_error(error, '-o '''//path//''': a file of results ends in .h5, .hdf5, .hdf or ' &
+            //'.vtkhdf')
+   end subroutine check_ending
 
    subroutine usage_error(error, cause)
       type(error_type), allocatable, intent(out) :: error

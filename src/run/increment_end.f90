@@ -4,16 +4,18 @@ module increment_end
    use errors, only: error_type
    use text, only: to_text
    use cost_account, only: next_increment
+   use steps, only: step_type
    use energy_ledger, only: close_increment
    use impact_scene, only: scene_type
    use result_file, only: record_increment
    use run_log, only: log_type, note, write_status, has_line
    use progress, only: show_progress
+   use stop_request, only: keep_watch, stop_if_asked
    use scene_setup, only: simulation_type
    use increment_checks, only: check_finite, check_energies, check_interpolation, check_balance, &
          needs_energies
    use course, only: course_type
-   use run_output, only: output_type, flush_now_and_then
+   use run_output, only: output_type, publish_now_and_then
    implicit none
    private
 
@@ -29,15 +31,27 @@ contains
       type(output_type), intent(inout) :: output
       type(error_type), allocatable, intent(out) :: error
 
+      call keep_watch(output%watch)
       call record(simulation, course, output, error)
       if (allocated(error)) return
-      call flush_now_and_then(output, simulation%scene%system%cost, error)
+      call publish_now_and_then(output, simulation%scene%system%cost, error)
       if (allocated(error)) return
       call next_increment(simulation%scene%system%cost)
       call check_end(simulation, course, error)
       if (allocated(error)) return
       ! all of the increment is recorded: from here a run can be taken up again
+      if (is_last(simulation%model%steps, course)) return
+      call stop_if_asked(output%watch, course%step, course%increment, &
+            simulation%motion%motion%t, error)
    end subroutine finish_increment
+
+   !> Whether the run is over.
+   pure logical function is_last(steps, course)
+      type(step_type), intent(in) :: steps(:)
+      type(course_type), intent(in) :: course
+
+      is_last = course%step == size(steps) .and. course%step_time >= steps(size(steps))%duration
+   end function is_last
 
    !> Energies, results, status and progress.
    subroutine record(simulation, course, output, error)

@@ -4,13 +4,14 @@
 module rehearsal
    use kinds, only: wp
    use state_archive, only: archive_type
-   use errors, only: error_type, new_error, status_numerical
+   use errors, only: error_type, new_error, status_numerical, status_interrupted
    use text, only: to_text, plural
    use mesh, only: scheme_implicit, scheme_explicit
    use steps, only: step_type
    use surfaces, only: method_transformation
    use stability_limit, only: stable_frequency
    use run_log, only: log_type, say
+   use stop_request, only: watch_type, keep_watch, stop_if_asked
    use scene_setup, only: simulation_type
    use increments, only: checkpoint_type, keep_state, put_back
    use twin_motion, only: twins_type, twin_settings_type, start_twins, take_fine_increment, &
@@ -106,10 +107,11 @@ contains
    end subroutine pass_plan
 
    !> Chooses the increments of a step; the simulation is then where it was.
-   subroutine rehearse(simulation, i_step, log, plan, error)
+   subroutine rehearse(simulation, i_step, log, watch, plan, error)
       type(simulation_type), intent(inout) :: simulation
       integer, intent(in) :: i_step
       type(log_type), intent(in) :: log
+      type(watch_type), intent(inout) :: watch
       type(plan_type), intent(out) :: plan
       type(error_type), allocatable, intent(out) :: error
       type(checkpoint_type) :: start
@@ -119,8 +121,11 @@ contains
       call keep_state(simulation, start)
       do while (.not. plan%ready)
          trial%size = plan%size
-         call try_out(simulation, plan, trial, error)
-         if (allocated(error)) return
+         call try_out(simulation, i_step, watch, plan, trial, error)
+         if (allocated(error)) then
+            if (error%status == status_interrupted) call put_back(simulation, start)
+            return
+         end if
          call put_back(simulation, start)
          call say(log, '  rehearsal: '//plural(trial%n, 'increment')//', estimated error ' &
                //to_text(estimated_error(trial, plan%base, plan%order), 3))
@@ -176,13 +181,17 @@ contains
    end subroutine set_sizes
 
    !> The step with one size.
-   subroutine try_out(simulation, plan, trial, error)
+   subroutine try_out(simulation, i_step, watch, plan, trial, error)
       type(simulation_type), intent(inout) :: simulation
+      integer, intent(in) :: i_step
+      type(watch_type), intent(inout) :: watch
       type(plan_type), intent(inout) :: plan
       type(trial_type), intent(inout) :: trial
       type(error_type), allocatable, intent(out) :: error
       type(twins_type) :: twins
+      real(wp) :: t
 
+      t = simulation%motion%motion%t
       call set_sizes(plan)
       call start_twins(twins, simulation, plan%settings)
       do while (.not. step_is_over(twins))
@@ -190,6 +199,9 @@ contains
          if (allocated(error)) return
          simulation%scene%n_events = 0
          call compare_twins(twins, simulation)
+         call keep_watch(watch)
+         call stop_if_asked(watch, i_step, 0, t, error)
+         if (allocated(error)) return
          if (twins%n <= plan%most) cycle
          call refuse(plan, real(twins%n, wp), error)
          return
