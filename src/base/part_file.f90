@@ -16,8 +16,8 @@ module part_file
    implicit none
    private
 
-   public :: part_file_type, check_output, claim, fill_part, publish, finish, discard, reserve_room, forget_room
-   public :: is_claimed, has_published, part_path
+   public :: part_file_type, check_output, claim, fill_part, publish, finish, discard
+   public :: reserve_room, forget_room, is_claimed, has_published, part_path
 
    !> An output that this process alone may write to.
    type :: part_file_type
