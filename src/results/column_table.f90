@@ -228,7 +228,8 @@ contains
       integer :: n_chunks, n_written
 
       n_written = self%n_rows - self%n_held
-      n_chunks = (n_written + n + chunk_rows - 1)/chunk_rows - (n_written + chunk_rows - 1)/chunk_rows
+      n_chunks = (n_written + n + chunk_rows - 1)/chunk_rows &
+            - (n_written + chunk_rows - 1)/chunk_rows
       if (compressed) n_chunks = n_chunks + 1
       bytes = n_chunks*((self%reals%n + self%integers%n)*(8_int64*chunk_rows + entry) &
             + self%texts%n*(int(text_length, int64)*chunk_rows + entry))

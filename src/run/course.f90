@@ -1,7 +1,9 @@
 !> Where a run is: the step, the increments taken in it, and what chooses the next one.
 module course
    use kinds, only: wp
+   use state_archive, only: archive_type
    use steps, only: step_type
+   use constraint_rows, only: rows_type
    use increment_count, only: count_increments, last_increment
    use increments, only: control_type
    use twin_motion, only: twins_type
@@ -19,14 +21,46 @@ module course
       real(wp) :: t_start = 0.0_wp               !! total time at the start of the step
       real(wp) :: step_time = 0.0_wp             !! reached
       real(wp) :: dt = 0.0_wp                    !! size of the last increment
+      real(wp) :: duration = 0.0_wp              !! of the step, as the last increment knew it
       integer :: counted_from = 0                !! increment after which fixed ones are counted
       real(wp) :: origin = 0.0_wp                !! step time at the end of that one
       type(control_type) :: control
       type(plan_type) :: plan
       type(twins_type) :: twins
+   contains
+      procedure :: pass_state
    end type course_type
 
 contains
+
+   !> All of it.
+   subroutine pass_state(self, archive, rows)
+      class(course_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+      type(rows_type), intent(in) :: rows        !! of the scene
+      logical :: twice                           !! the motion is computed twice, for a TOLERANCE
+
+      call archive%pass('step', self%step)
+      call archive%pass('increment', self%increment)
+      call archive%pass('t_start', self%t_start)
+      call archive%pass('step_time', self%step_time)
+      call archive%pass('dt', self%dt)
+      call archive%pass('duration', self%duration)
+      call archive%pass('counted_from', self%counted_from)
+      call archive%pass('origin', self%origin)
+      call archive%enter('control')
+      call self%control%pass_state(archive)
+      call archive%leave()
+      twice = self%twins%n > 0
+      call archive%pass('twice', twice)
+      if (.not. twice) return
+      call archive%enter('plan')
+      call self%plan%pass_state(archive)
+      call archive%leave()
+      call archive%enter('twins')
+      call self%twins%pass_state(archive, rows)
+      call archive%leave()
+   end subroutine pass_state
 
    !> At the start of a step.
    pure subroutine begin_course(self, i_step, t)

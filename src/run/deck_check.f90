@@ -46,6 +46,7 @@ contains
       call report_preview(preview, simulation, .true., log)
       call report_notes(simulation, log)
       call say(log, 'the deck is sound')
+      call simulation%scene%system%matrices%release()
    end subroutine check_deck
 
    !> Builds the scene and goes through all steps without time passing, for their errors.
@@ -55,12 +56,30 @@ contains
       logical, intent(in) :: aloud
       type(preview_type), intent(out) :: preview
       type(error_type), allocatable, intent(out) :: error
-      integer :: i
 
       call build_scene(simulation, error)
       if (allocated(error)) return
       allocate (preview%may_meet(size(simulation%contact%names)), source=.false.)
       if (aloud) call report_model(simulation, log)
+      call go_through_steps(simulation, log, aloud, preview, error)
+      if (allocated(error)) then
+         call simulation%scene%system%matrices%release()
+         return
+      end if
+      call estimate_memory(preview%memory, simulation)
+      call share_memory(preview%features, preview%memory)
+      call name_idle_pairs(simulation, preview)
+   end subroutine prepare
+
+   !> Brings every step into force once, looks at what it will take, and lets its time pass.
+   subroutine go_through_steps(simulation, log, aloud, preview, error)
+      type(simulation_type), intent(inout) :: simulation
+      type(log_type), intent(in) :: log
+      logical, intent(in) :: aloud
+      type(preview_type), intent(inout) :: preview
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
       do i = 1, size(simulation%model%steps)
          call begin_step(simulation, i, error)
          if (allocated(error)) return
@@ -69,10 +88,7 @@ contains
          simulation%motion%motion%t = simulation%motion%motion%t &
                + simulation%model%steps(i)%duration
       end do
-      call estimate_memory(preview%memory, simulation)
-      call share_memory(preview%features, preview%memory)
-      call name_idle_pairs(simulation, preview)
-   end subroutine prepare
+   end subroutine go_through_steps
 
    !> Memory, features and advice of a step in force.
    subroutine look_ahead(simulation, i_step, aloud, preview)

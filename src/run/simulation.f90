@@ -1,6 +1,7 @@
 !> The run: deck, scene, files, the steps one after the other, and how it ended.
 module simulation
-   use errors, only: error_type, status_file
+   use errors, only: error_type, status_file, status_interrupted
+   use stop_signals, only: catch_signals
    use file_calls, only: ignore_signals
    use part_file, only: part_file_type, check_output, discard
    use cost_account, only: start_clock, enter, leave, phase_read, phase_build, phase_output
@@ -12,6 +13,7 @@ module simulation
    use output_files, only: claim_output, log_stem
    use publishing, only: start_publishing
    use run_log, only: log_type, open_log, close_log, say
+   use stop_request, only: start_watch, remove_stop_files
    use progress, only: start_progress, end_progress
    use scene_setup, only: simulation_type, initial_motion
    use frequency_run, only: run_frequency_step
@@ -45,8 +47,10 @@ contains
 
       associate (cost => simulation%scene%system%cost)
          call start_clock(cost)
+         call catch_signals()
          call ignore_signals([broken_pipe, file_too_large])
          call start_publishing(output%publishing)
+         call start_watch(output%watch, command%deck, command%time_limit, output%publishing%last)
          call check_output(command%output, command%overwrite, error)
          if (allocated(error)) return
          call enter(cost, phase_read, outer)
@@ -69,6 +73,7 @@ contains
          return
       end if
       call run_steps(simulation, command, place, output, error)
+      call remove_stop_files(output%watch)
       call end_progress(output%progress)
       call close_results(output%results, simulation%scene, close_error)
       call merge_errors(error, close_error, output%results%file)
@@ -78,6 +83,7 @@ contains
       call report_end(output%log, error)
       call close_log(output%log, close_error)
       if (.not. allocated(error) .and. allocated(close_error)) call move_alloc(close_error, error)
+      call simulation%scene%system%matrices%release()
    end subroutine run_deck
 
    !> What stopped the run, and what became of its results. A file that could not be written is told
@@ -89,7 +95,8 @@ contains
       logical :: superseded
 
       superseded = .not. allocated(error)
-      if (.not. superseded) superseded = error%status == status_file .and. file%saved
+      if (.not. superseded) superseded = error%status == status_interrupted .or. &
+            (error%status == status_file .and. file%saved)
       if (superseded .and. allocated(close_error)) call move_alloc(close_error, error)
       remark = file%remark()
       if (.not. allocated(error) .or. len(remark) == 0) return

@@ -8,6 +8,7 @@ module time_loop
    use command_line, only: version_text
    use scene_setup, only: simulation_type
    use step_start, only: start_step
+   use stop_request, only: start_looking, stop_if_asked
    use increment_checks, only: check_finite, check_energies
    use run_report, only: report_step
    use course, only: course_type, is_fresh
@@ -36,7 +37,7 @@ contains
          output%iterations = simulation%scene%n_iterations
       end if
       do
-         call take_next(simulation, course, output%log, taken, error)
+         call take_next(simulation, course, output%log, output%watch, taken, error)
          if (allocated(error) .or. .not. taken) exit
          call finish_increment(simulation, course, output, error)
          if (allocated(error)) exit
@@ -59,6 +60,9 @@ contains
       if (allocated(error)) return
       call report_step(simulation, course%step, output%log)
       if (course%step == 1) call record_start(simulation, output, error)
+      if (allocated(error)) return
+      call start_looking(output%watch)
+      call stop_if_asked(output%watch, course%step, 0, simulation%motion%motion%t, error)
    end subroutine enter_step
 
    !> The system of equations and the initial state.
