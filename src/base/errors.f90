@@ -1,5 +1,6 @@
 !> Errors as values: whatever can fail returns one, and only the main program stops.
 module errors
+   use display, only: displayed
    implicit none
    private
 
@@ -23,7 +24,7 @@ module errors
 
 contains
 
-   !> Makes an error of the given exit status.
+   !> Makes an error of the given exit status; what cannot be shown becomes an escape.
    pure subroutine new_error(error, status, message)
       type(error_type), allocatable, intent(out) :: error
       integer, intent(in) :: status             !! one of the status_ parameters
@@ -31,7 +32,7 @@ contains
 
       allocate (error)
       error%status = status
-      error%message = message
+      error%message = displayed(message)
    end subroutine new_error
 
 end module errors
