@@ -1,5 +1,5 @@
-!> The calls to the HDF5 library, with those of hdf5_opening and hdf5_changes the only ones: datasets,
-!> attributes and growing datasets by path. hdf5_file and hdf5_reader give them types and messages.
+!> The calls to the HDF5 library, with those of hdf5_opening and hdf5_changes the only ones:
+!> datasets, attributes and growing datasets by path. hdf5_file and hdf5_reader give them types.
 module hdf5_calls
    use, intrinsic :: iso_c_binding, only: c_char, c_loc, c_ptr
    use hdf5, only: h5_integer_kind, h5aclose_f, h5acreate_f, h5aexists_f, h5aopen_f, h5awrite_f, &

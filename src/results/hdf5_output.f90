@@ -1,9 +1,9 @@
-!> An HDF5 file from its making to its closing, its groups, and datasets by their addresses; hdf5_file
-!> gives them types.
+!> An HDF5 file from its making to its closing, its groups, and datasets by their addresses;
+!> hdf5_file gives them types.
 !>
-!> A file that is reopened (`modify_claimed`) is made again by the same calls as a new one: groups and
-!> series that are there stay, datasets and attributes are written anew, in their old place where
-!> they fit.
+!> A file that is reopened (`modify_claimed`) is made again by the same calls as a new one: groups
+!> and series that are there stay, datasets and attributes are written anew, in their old place
+!> where they fit.
 !>
 !> It is written aside (part_file): what others see is what was published last, complete and
 !> closed. Before data are written, `reserve` has the disk set their space aside. So a full disk is

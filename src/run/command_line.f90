@@ -45,7 +45,7 @@ contains
       text = 'carom '//version_text//': structural dynamics with impact'//nl//nl// &
             'usage: carom run DECK [-o OUT.h5] [--define NAME=VALUE]... [--threads N] [--quiet]' &
             //nl// &
-            '                      [--overwrite | --restart OLD.h5] [--memory SIZE]'//nl// &
+            '                      [--overwrite] [--restart OLD.h5] [--memory SIZE]'//nl// &
             '                      [--time-limit TIME]'//nl// &
             '       carom check DECK [--define NAME=VALUE]... [--memory SIZE]'//nl// &
             '       carom --version | --help'//nl//nl// &
@@ -56,7 +56,7 @@ contains
             '  --threads threads to work with (default: OMP_NUM_THREADS, else 1)'//nl// &
             '  --quiet  no progress on the terminal'//nl// &
             '  --overwrite  replaces results that exist'//nl// &
-            '  --restart  goes on from the state saved in OLD.h5'//nl// &
+            '  --restart  goes on from the state saved in OLD.h5, there or in OUT.h5'//nl// &
             '  --memory  what the run may take, as 500M or 12G (default: the machine''s)'//nl// &
             '  --time-limit  stops then with the state saved; seconds or HH:MM:SS'//nl//nl// &
             'exit status: 0 done, 1 usage, 2 deck, 3 file, 4 numerical, 5 interrupted, 6 internal'
@@ -222,6 +222,9 @@ contains
       end if
       if (allocated(command%output)) then
          call check_ending(command%output, error)
+         return
+      else if (allocated(command%restart)) then
+         command%output = command%restart
          return
       end if
       dot = index(command%deck, '.', back=.true.)
