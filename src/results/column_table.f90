@@ -43,6 +43,8 @@ module column_table
       procedure :: add_integer_column
       procedure :: add_text_column
       procedure :: count_rows
+      procedure :: count_columns
+      procedure :: cut_back
       procedure :: flush => flush_rows
       generic :: append_row => append_reals, append_mixed
       procedure, private :: append_reals, append_mixed
@@ -113,6 +115,42 @@ contains
 
       count_rows = self%n_rows
    end function count_rows
+
+   pure integer function count_columns(self)
+      class(column_table_type), intent(in) :: self
+
+      count_columns = self%reals%n + self%integers%n + self%texts%n
+   end function count_columns
+
+   !> Leaves the first rows of a reopened file, to go on behind them.
+   subroutine cut_back(self, file, n_rows, short, error)
+      class(column_table_type), intent(inout) :: self
+      type(hdf5_file_type), intent(inout) :: file
+      integer, intent(in) :: n_rows
+      character(len=:), allocatable, intent(out) :: short   !! a column with fewer, if there is one
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+
+      call cut_columns(file, self%reals, n_rows, short, error)
+      if (allocated(error) .or. allocated(short)) return
+      call cut_columns(file, self%integers, n_rows, short, error)
+      if (allocated(error) .or. allocated(short)) return
+      call cut_columns(file, self%texts, n_rows, short, error)
+      self%n_rows = n_rows
+   end subroutine cut_back
+
+   subroutine cut_columns(file, columns, n_rows, short, error)
+      type(hdf5_file_type), intent(inout) :: file
+      type(columns_type), intent(in) :: columns
+      integer, intent(in) :: n_rows
+      character(len=:), allocatable, intent(out) :: short
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      do i = 1, columns%n
+         call file%cut(trim(columns%paths(i)), int(n_rows, int64), short, error)
+         if (allocated(error) .or. allocated(short)) return
+      end do
+   end subroutine cut_columns
 
    !> Appends a row to a table of reals.
    subroutine append_reals(self, file, values, error)

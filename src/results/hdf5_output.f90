@@ -279,15 +279,17 @@ contains
       class(hdf5_output_type), intent(inout) :: self
       character(len=*), intent(in) :: path
       integer(int64), intent(in) :: n_rows
-      logical, intent(out) :: short   !! it has fewer rows, or is not there
+      character(len=:), allocatable, intent(out) :: short   !! its path if it has not so many
       type(error_type), allocatable, intent(out) :: error   !! status_file
       integer(hsize_t) :: n_missing
       logical :: failed
 
-      short = .not. self%holds(path)
-      if (short) return
+      if (.not. self%holds(path)) then
+         short = path
+         return
+      end if
       call cut_rows(self%id, path, int(n_rows, hsize_t), n_missing, failed)
-      short = n_missing > 0
+      if (n_missing > 0) short = path
       if (failed) call self%write_failure(path, error)
    end subroutine cut
 

@@ -1,25 +1,25 @@
 !> The run: deck, scene, files, the steps one after the other, and how it ended.
 module simulation
    use errors, only: error_type, status_file, status_interrupted
+   use text, only: to_text
    use stop_signals, only: catch_signals
    use file_calls, only: ignore_signals
    use part_file, only: part_file_type, check_output, discard
    use cost_account, only: start_clock, enter, leave, phase_read, phase_build, phase_output
    use steps, only: procedure_frequency
-   use deck_reader, only: read_deck
    use hdf5_file, only: hdf5_file_type
    use result_file, only: open_results, close_results
    use command_line, only: command_type
    use output_files, only: claim_output, log_stem
    use publishing, only: start_publishing
    use run_log, only: log_type, open_log, close_log, say
-   use stop_request, only: start_watch, remove_stop_files
+   use stop_request, only: start_watch, start_looking, look_for_stop, stop_run, remove_stop_files
    use progress, only: start_progress, end_progress
    use scene_setup, only: simulation_type, initial_motion
    use frequency_run, only: run_frequency_step
    use scene_advice, only: advice_list_type, advise_end
    use feature_report, only: report_advice
-   use deck_check, only: prepare, report_preview
+   use deck_check, only: read_model, prepare, report_preview
    use run_report, only: report_model, report_notes, report_summary
    use course, only: course_type, begin_course
    use run_output, only: output_type
@@ -54,7 +54,7 @@ contains
          call check_output(command%output, command%overwrite, error)
          if (allocated(error)) return
          call enter(cost, phase_read, outer)
-         call read_deck(simulation%model, command%deck, command%definitions, error)
+         call read_model(simulation%model, command, output%preview, error)
          call leave(cost, outer)
          if (allocated(error)) return
          call enter(cost, phase_build, outer)
@@ -149,12 +149,31 @@ contains
       do i = max(1, course%step), size(simulation%model%steps)
          if (i > course%step) call begin_course(course, i, simulation%motion%motion%t)
          if (simulation%model%steps(i)%procedure == procedure_frequency) then
-            call run_frequency_step(simulation, i, output%results, output%log, error)
+            call do_frequency_step(simulation, course, output, error)
          else
             call run_step(simulation, course, output, error)
          end if
          if (allocated(error)) return
       end do
    end subroutine run_steps
+
+   !> A frequency step, which is finished once it has begun.
+   subroutine do_frequency_step(simulation, course, output, error)
+      type(simulation_type), intent(inout) :: simulation
+      type(course_type), intent(inout) :: course
+      type(output_type), intent(inout) :: output
+      type(error_type), allocatable, intent(out) :: error
+      logical :: asked
+
+      if (course%entered) return
+      call run_frequency_step(simulation, course%step, output%results, output%log, error)
+      if (allocated(error)) return
+      course%entered = .true.
+      if (course%step == size(simulation%model%steps)) return
+      call start_looking(output%watch)
+      call look_for_stop(output%watch, asked)
+      if (asked) call stop_run(output%watch, 'after step '//to_text(course%step), &
+            simulation%motion%motion%t, error)
+   end subroutine do_frequency_step
 
 end module simulation
