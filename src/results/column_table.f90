@@ -5,6 +5,7 @@
 !> holds the values of the real columns, then of the integer and of the text columns, each in the
 !> order in which the columns were added.
 module column_table
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_is_nan
    use errors, only: error_type, new_error, status_internal, status_numerical
    use hdf5_file, only: hdf5_file_type, series_integer, series_real
    use kinds, only: int64, wp
@@ -198,10 +199,11 @@ contains
       type(error_type), allocatable, intent(out) :: error
       integer :: i
 
-      if (all(abs(values) <= huge(1.0_wp))) return
+      ! to compare a NaN is an invalid operation, to ask for one is not
+      if (all(ieee_is_finite(values))) return
       do i = 1, size(values)
-         if (abs(values(i)) <= huge(1.0_wp)) cycle
-         if (self%reals%partial(i) .and. .not. abs(values(i)) > huge(1.0_wp)) cycle
+         if (ieee_is_finite(values(i))) cycle
+         if (self%reals%partial(i) .and. ieee_is_nan(values(i))) cycle
          call new_error(error, status_numerical, trim(self%reals%paths(i))//' is not finite (NaN ' &
                //'or infinite) at time '//to_text(values(1))//new_line('a') &
                //'  cure: a smaller step; or other units, so that no number overflows')
