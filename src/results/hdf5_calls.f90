@@ -25,6 +25,7 @@ module hdf5_calls
    type :: storage_type
       integer(hid_t) :: in_file = -1
       integer(hid_t) :: in_memory = -1
+      integer :: bytes = 8                       !! of a value in the file
    end type storage_type
 
    !> How a growing dataset is cut into chunks, each of which lies together in the file.
@@ -60,6 +61,7 @@ contains
    function byte_storage() result(storage)
       type(storage_type) :: storage
 
+      storage%bytes = 1
       storage%in_file = h5t_std_u8le
       storage%in_memory = h5t_std_u8le
    end function byte_storage
@@ -70,6 +72,7 @@ contains
       type(storage_type) :: storage
       integer :: status
 
+      storage%bytes = length
       call h5tcopy_f(h5t_fortran_s1, storage%in_memory, status)
       call h5tset_size_f(storage%in_memory, int(length, size_t), status)
       call h5tcopy_f(storage%in_memory, storage%in_file, status)
