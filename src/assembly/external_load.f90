@@ -232,7 +232,7 @@ contains
       earlier = 0.0_wp
       do i = 1, size(step%loads)
          f = structure%map%freedom(step%loads(i)%dof, step%loads(i)%node)
-         call take_over(self, f, t, earlier)
+         if (f > 0) call take_over(self, f, t, earlier)
       end do
       do a = 0, size(model%amplitudes)
          pattern = 0.0_wp
@@ -241,6 +241,7 @@ contains
          do i = 1, size(step%loads)
             if (step%loads(i)%amplitude /= a) cycle
             f = structure%map%freedom(step%loads(i)%dof, step%loads(i)%node)
+            if (f == 0) cycle               ! a load of zero may name a freedom that is none
             pattern(f) = pattern(f) + step%loads(i)%value
             start(f) = earlier(f)
          end do

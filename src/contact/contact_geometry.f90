@@ -3,6 +3,8 @@
 !> as they are in the undeformed configuration.
 module contact_geometry
    use kinds, only: wp, int64
+   use text, only: to_text
+   use state_archive, only: archive_type
    use memory_shortage, only: check_allocation
    use model, only: model_type
    use surfaces, only: rigid_surface_type
@@ -49,6 +51,8 @@ module contact_geometry
       real(wp), allocatable :: x(:, :)           !! (3, n_nodes) undeformed
       type(row_terms_type) :: frozen             !! the rows that stay as they are
       real(wp), allocatable :: allowance(:)      !! (n_rows) gap that counts as none, if allocated
+   contains
+      procedure :: pass_state
    end type contact_geometry_type
 
    !> Positions of all nodes before and after a motion, and how far a node looks for a partner.
@@ -99,6 +103,21 @@ contains
          call place_pass(self, self%passes(i), positions, self%frozen)
       end do
    end subroutine new_contact_geometry
+
+   !> What searches leave behind, where rows move.
+   subroutine pass_state(self, archive)
+      class(contact_geometry_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+      integer :: i
+
+      if (.not. self%moving) return
+      do i = 1, size(self%targets)
+         call archive%enter('target_'//to_text(i))
+         call self%targets(i)%pass_state(archive)
+         call archive%leave()
+      end do
+      call archive%pass('n_searches', self%n_searches)
+   end subroutine pass_state
 
    !> From now on the gaps of all rows are counted from these.
    subroutine allow_gaps(self, allowance)

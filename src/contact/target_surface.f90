@@ -3,6 +3,7 @@
 !> of the surface, widens the boxes that are asked for, up to a slack.
 module target_surface
    use kinds, only: int64, wp
+   use state_archive, only: archive_type
    use memory_shortage, only: check_allocation
    use segment_projection, only: edge_frame
    use edge_bins, only: edge_bins_type, find_in_box, new_bins
@@ -39,6 +40,9 @@ module target_surface
       real(wp), private :: slack = -1.0_wp       !! motion beside the drift that the bins allow
       real(wp), private :: reach = 0.0_wp        !! that the bins were built for
       real(wp), private :: least_slack = 0.0_wp
+      real(wp), private :: cell = 0.0_wp         !! smallest that the bins were built with
+   contains
+      procedure :: pass_state
    end type target_type
 
 contains
@@ -112,6 +116,25 @@ contains
       call build_bins(self, x_now, reach)
    end subroutine update_target
 
+   !> What the bins have been built from and with: they are built again. What is found does not
+   !> depend on them, but its order may.
+   subroutine pass_state(self, archive)
+      class(target_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+      real(wp) :: x(2, size(self%leaving))
+
+      call archive%pass('built', self%built)
+      call archive%pass('cell', self%cell)
+      call archive%pass('slack', self%slack)
+      if (archive%reading .and. self%slack > 0.0_wp) then
+         x = 0.0_wp
+         x(:, self%nodes) = self%built
+         call build_bins(self, x, self%cell)
+      end if
+      call archive%pass('n_tests', self%n_tests)
+      call archive%pass('n_builds', self%n_builds)
+   end subroutine pass_state
+
    pure subroutine build_bins(self, x_now, reach)
       type(target_type), intent(inout) :: self
       real(wp), intent(in) :: x_now(:, :)
@@ -131,6 +154,7 @@ contains
       self%least_slack = max(least/2.0_wp, 1.0e-6_wp*maxval(high - low))
       self%slack = max(reach, self%least_slack)
       self%reach = max(reach, self%slack)
+      self%cell = reach
       call new_bins(self%bins, low, high, reach)
       self%built = x_now(1:2, self%nodes)
       self%drift = 0.0_wp

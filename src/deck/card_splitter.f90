@@ -325,7 +325,7 @@ contains
       end if
       call add_file(source, path, error)
       if (allocated(error)) then
-         trouble = error%message
+         trouble = error%message(:index(error%message//new_line('a'), new_line('a')) - 1)
          if (error%status == status_file) call fail_at(error, source, card%parameters(1)%place, &
                trouble, cure='the path is relative to the file that includes')
          return

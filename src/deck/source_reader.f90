@@ -57,7 +57,8 @@ contains
             action='read', iostat=status, iomsg=reason)
       if (status /= 0) then
          call new_error(error, status_file, "cannot open '"//path//"':"// &
-               trim(reason(index(reason, ': ', back=.true.) + 1:)))
+               trim(reason(index(reason, ': ', back=.true.) + 1:))//new_line('a')// &
+               '  cure: check the name, and that the file may be read')
          return
       end if
       inquire (unit=unit, size=length)

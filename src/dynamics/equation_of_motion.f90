@@ -24,6 +24,7 @@ module equation_of_motion
    public :: prepare_mass, solve_mass, solve_together, force_balance, impose
    public :: settle_massless
    public :: rigid_mass, count_updates, resist, mark_type, begin_matrix, end_matrix
+   public :: prepare_again
 
    !> A structure under the loads and conditions of a step, with its matrices.
    type :: system_type
@@ -237,6 +238,20 @@ contains
       if (.not. self%structure%is_linear) call self%matrices%forget()
       call prepare(self, self%profile, d, history, factors, error)
    end subroutine prepare_motion
+
+   !> Makes a matrix ready that has been there before: M or one of `prepare_motion`.
+   subroutine prepare_again(self, factors, state, error)
+      type(system_type), intent(inout) :: self
+      real(wp), intent(in) :: factors(3)         !! c_m, c_c, c_k
+      type(state_type), intent(in) :: state      !! any, the matrix does not depend on it
+      type(error_type), allocatable, intent(out) :: error
+
+      if (any(factors(2:3) > 0.0_wp)) then
+         call prepare(self, self%profile, state%d, state%history, factors, error)
+      else
+         call prepare_mass(self, error)
+      end if
+   end subroutine prepare_again
 
    !> Makes a matrix ready; books what that takes.
    subroutine prepare(self, profile, d, history, factors, error)

@@ -13,7 +13,7 @@ module gauss_matrices
    implicit none
    private
 
-   public :: gauss_matrices_type, prepare_gauss, solve_gauss
+   public :: gauss_matrices_type, prepare_gauss, solve_gauss, kept_gauss_steps, drop_gauss
 
    integer, parameter :: n_slots = 4
    real(wp), parameter :: unit(3, 3) = reshape(real([1, 0, 0, 0, 1, 0, 0, 0, 1], wp), [3, 3])
@@ -84,6 +84,32 @@ contains
          slot%last_use = self%clock
       end associate
    end subroutine prepare_gauss
+
+   !> Steps whose factors are in the store, the one used last at the end.
+   pure subroutine kept_gauss_steps(self, matrices, dt, whole)
+      type(gauss_matrices_type), intent(in) :: self
+      type(effective_system_type), intent(in) :: matrices
+      real(wp), allocatable, intent(out) :: dt(:)
+      logical, allocatable, intent(out) :: whole(:)   !! it has the place of whole steps
+      logical :: left(n_slots)
+      integer :: i, j
+
+      left = self%slots%dt > 0.0_wp .and. self%generation == matrices%generation
+      allocate (dt(count(left)), whole(count(left)))
+      do i = 1, size(dt)
+         j = minloc(self%slots%last_use, dim=1, mask=left)
+         dt(i) = self%slots(j)%dt
+         whole(i) = j == 1
+         left(j) = .false.
+      end do
+   end subroutine kept_gauss_steps
+
+   !> Empties the store.
+   subroutine drop_gauss(self)
+      type(gauss_matrices_type), intent(out) :: self
+
+      self%current = 1
+   end subroutine drop_gauss
 
    !> The structure or its equations have changed.
    subroutine drop_all(self, generation)

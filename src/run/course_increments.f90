@@ -6,6 +6,7 @@ module course_increments
    use text, only: to_text
    use steps, only: step_type
    use run_log, only: log_type, say
+   use stop_request, only: watch_type
    use scene_setup, only: simulation_type
    use increments, only: start_control, take_increment, take_automatic_increment
    use twin_motion, only: start_twins, take_fine_increment, compare_twins, step_is_over
@@ -19,10 +20,11 @@ module course_increments
 contains
 
    !> Takes an increment of the step in force, if one is left, and counts it.
-   subroutine take_next(simulation, course, log, taken, error)
+   subroutine take_next(simulation, course, log, watch, taken, error)
       type(simulation_type), intent(inout) :: simulation
       type(course_type), intent(inout) :: course
       type(log_type), intent(in) :: log
+      type(watch_type), intent(inout) :: watch   !! over rehearsals
       logical, intent(out) :: taken
       type(error_type), allocatable, intent(out) :: error
 
@@ -31,7 +33,7 @@ contains
       else if (simulation%scene%system%static) then
          call take_automatic(simulation, course, taken, error)
       else
-         call take_to_tolerance(simulation, course, log, taken, error)
+         call take_to_tolerance(simulation, course, log, watch, taken, error)
       end if
    end subroutine take_next
 
@@ -75,16 +77,17 @@ contains
 
    !> Increments of a dynamic step that keep its error to TOLERANCE, found by rehearsals before the
    !> first of them.
-   subroutine take_to_tolerance(simulation, course, log, taken, error)
+   subroutine take_to_tolerance(simulation, course, log, watch, taken, error)
       type(simulation_type), intent(inout) :: simulation
       type(course_type), intent(inout) :: course
       type(log_type), intent(in) :: log
+      type(watch_type), intent(inout) :: watch
       logical, intent(out) :: taken
       type(error_type), allocatable, intent(out) :: error
 
       taken = .true.
       if (is_fresh(course)) then
-         call rehearse(simulation, course%step, log, course%plan, error)
+         call rehearse(simulation, course%step, log, watch, course%plan, error)
          if (allocated(error)) return
          call start_twins(course%twins, simulation, course%plan%settings)
       end if
@@ -109,6 +112,7 @@ contains
       course%increment = course%increment + 1
       course%step_time = step_time
       course%dt = dt
+      course%duration = simulation%model%steps(course%step)%duration
       simulation%motion%motion%t = course%t_start + step_time
    end subroutine count_increment
 

@@ -53,6 +53,7 @@ contains
       call report_preview(preview, simulation, .true., log)
       call report_notes(simulation, log)
       call say(log, 'the deck is sound')
+      call simulation%scene%system%matrices%release()
    end subroutine check_deck
 
    !> The model of the deck, unless to read it takes more memory than there is.
@@ -96,7 +97,6 @@ contains
       logical, intent(in) :: aloud
       type(preview_type), intent(inout) :: preview   !! with its limit
       type(error_type), allocatable, intent(out) :: error
-      integer :: i
 
       call check_building(preview%limit, simulation%model, error)
       if (allocated(error)) return
@@ -104,6 +104,27 @@ contains
       if (allocated(error)) return
       allocate (preview%may_meet(size(simulation%contact%names)), source=.false.)
       if (aloud) call report_model(simulation, log)
+      call go_through_steps(simulation, log, aloud, preview, error)
+      if (allocated(error)) then
+         call simulation%scene%system%matrices%release()
+         return
+      end if
+      call estimate_memory(preview%memory, simulation)
+      call share_memory(preview%features, preview%memory)
+      call name_idle_pairs(simulation, preview)
+      if (.not. aloud) call check_need(preview%limit, preview%memory, simulation, error)
+      if (allocated(error)) call simulation%scene%system%matrices%release()
+   end subroutine prepare
+
+   !> Brings every step into force once, looks at what it will take, and lets its time pass.
+   subroutine go_through_steps(simulation, log, aloud, preview, error)
+      type(simulation_type), intent(inout) :: simulation
+      type(log_type), intent(in) :: log
+      logical, intent(in) :: aloud
+      type(preview_type), intent(inout) :: preview
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
       do i = 1, size(simulation%model%steps)
          call begin_step(simulation, i, error)
          if (allocated(error)) return
@@ -112,11 +133,7 @@ contains
          simulation%motion%motion%t = simulation%motion%motion%t &
                + simulation%model%steps(i)%duration
       end do
-      call estimate_memory(preview%memory, simulation)
-      call share_memory(preview%features, preview%memory)
-      call name_idle_pairs(simulation, preview)
-      if (.not. aloud) call check_need(preview%limit, preview%memory, simulation, error)
-   end subroutine prepare
+   end subroutine go_through_steps
 
    !> Memory, features and advice of a step in force.
    subroutine look_ahead(simulation, i_step, aloud, preview)
