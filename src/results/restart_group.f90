@@ -8,6 +8,7 @@ module restart_group
    use text, only: to_text
    use places, only: source_type
    use state_archive, only: archive_type, entry_type
+   use memory_shortage, only: check_allocation
    use hdf5_file, only: hdf5_file_type
    use hdf5_reader, only: hdf5_reader_type
    implicit none
@@ -41,9 +42,10 @@ contains
       type(restart_group_type), intent(out) :: self
       type(source_type), intent(in) :: source
       character(len=*), intent(in) :: definitions(:)   !! NAME=VALUE
-      integer :: i
+      integer :: i, status
 
-      allocate (self%files(source%n_files), self%n_lines(source%n_files))
+      allocate (self%files(source%n_files), self%n_lines(source%n_files), stat=status)
+      call check_allocation(status)
       do i = 1, source%n_files
          self%files(i) = source%files(i)%name
          self%n_lines(i) = source%files(i)%n_lines
@@ -99,6 +101,7 @@ contains
       type(restart_group_type), intent(inout) :: self
       type(hdf5_file_type), intent(inout) :: file
       type(error_type), allocatable, intent(out) :: error
+      integer :: status
 
       call remove_state(file, error)
       if (allocated(error)) return
@@ -108,7 +111,8 @@ contains
             'version of the meaning of the entries', error)
       if (allocated(error)) return
       call write_deck_names(self, file, error)
-      allocate (self%entries(0))
+      allocate (self%entries(0), stat=status)
+      call check_allocation(status)
    end subroutine begin_group
 
    !> Room for all entries, where they are not those of the state before.
