@@ -11,8 +11,8 @@ def unchecked(path):
         if found.group(1).lstrip().startswith('!'):
             continue
         statement, after = found.group(0), found.group(2)
-        status = re.search(r'stat=(\w+)\)', statement)
-        if not status or after.strip() != f'call check_allocation({status.group(1)})':
+        status = re.search(r'stat=(\w+)\)$', statement[:statement.rindex('\n', 0, -1)])
+        if not status or not re.search(rf'(if |call check_allocation)\({status.group(1)}\b', after):
             yield text.count('\n', 0, found.start()) + 1
 
 
