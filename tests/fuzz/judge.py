@@ -13,7 +13,7 @@ import numpy as np
 TIME_LIMIT = 20             # seconds after which a run is asked to stop: it may well be a long one
 CPU_LIMIT = 40.0            # seconds of processor time after which it hangs
 WALL_LIMIT = 600.0          # likewise, if it only waits
-MEMORY_LIMIT = 1500         # MB
+MEMORY_LIMIT = 1500         # MB with what sanitizers need; the program is given half of it
 FILE_LIMIT = 2**31          # bytes
 SANITIZERS = {
     "ASAN_OPTIONS": f"hard_rss_limit_mb={MEMORY_LIMIT}:allocator_may_return_null=1:"
@@ -89,7 +89,7 @@ def wait_for(process):
 def judge(carom, folder, command, words=()):
     """Runs `carom run` or `carom check` on folder/deck.inp and judges it."""
     folder = Path(folder)
-    line = [str(carom), command, "deck.inp", *words]
+    line = [str(carom), command, "deck.inp", "--memory", f"{MEMORY_LIMIT//2}M", *words]
     if command == "run":
         line += ["-o", "out.h5", "--quiet", "--time-limit", str(TIME_LIMIT)]
     with open(folder / "terminal", "w+b") as output:
