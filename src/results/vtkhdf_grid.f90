@@ -6,6 +6,7 @@
 !> left, and must be called before the file is closed. The data are written first and the number
 !> of frames last: whatever happens in between, a reader finds the frames before.
 module vtkhdf_grid
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_is_nan
    use errors, only: error_type, new_error, status_internal, status_numerical
    use hdf5_file, only: hdf5_file_type, series_integer, series_real
    use kinds, only: int64, wp
@@ -225,10 +226,9 @@ contains
       integer :: i
 
       do i = 1, size(self%fields)
-         associate (field => self%fields(i), values => self%fields(i)%held(:, &
-               self%n_held*self%fields(i)%n + 1:(self%n_held + 1)*self%fields(i)%n))
-            if (all(abs(values) <= huge(1.0_wp))) cycle
-            if (field%partial .and. .not. any(abs(values) > huge(1.0_wp))) cycle
+         associate (field => self%fields(i))
+            if (is_sound(field%held(:, self%n_held*field%n + 1:(self%n_held + 1)*field%n), &
+                  field%partial)) cycle
             call new_error(error, status_numerical, field%data_path//' is not finite (NaN or ' &
                   //'infinite) at time '//to_text(time)//new_line('a') &
                   //'  cure: a smaller step; or other units, so that no number overflows')
@@ -236,6 +236,20 @@ contains
          end associate
       end do
    end subroutine check_finite
+
+   !> Whether all values are finite, or NaN where that is allowed.
+   pure function is_sound(values, partial) result(sound)
+      real(wp), intent(in) :: values(:, :)
+      logical, intent(in) :: partial
+      logical :: sound
+
+      if (partial) then
+         ! to compare a NaN is an invalid operation, to ask for one is not
+         sound = all(ieee_is_finite(values) .or. ieee_is_nan(values))
+      else
+         sound = all(ieee_is_finite(values))
+      end if
+   end function is_sound
 
    !> Hands over a scalar field for the next frame; it stays until it is set again.
    pure subroutine set_scalars(self, field, values)

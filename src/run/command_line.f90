@@ -2,7 +2,8 @@
 module command_line
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
    use kinds, only: wp
-   use text, only: upper_case
+   use text, only: upper_case, to_text
+   use numbers, only: parse_integer, parse_real
    use errors, only: error_type, new_error, status_usage
    use deck_reader, only: definition_type
    implicit none
@@ -17,6 +18,8 @@ module command_line
    integer, parameter :: command_help = 4
 
    character(len=*), parameter :: version_text = '0.1.0'
+
+   integer, parameter :: most_threads = 1024
 
    !> A command with its options.
    type :: command_type
@@ -125,7 +128,8 @@ contains
       character(len=*), intent(in) :: option, value
       type(error_type), allocatable, intent(out) :: error
       type(definition_type) :: definition
-      integer :: split, status
+      character(len=:), allocatable :: cause
+      integer :: split
 
       select case (option)
       case ('-o')
@@ -146,11 +150,11 @@ contains
          definition%value = value(split + 1:)
          command%definitions = [command%definitions, definition]
       case default
-         if (verify(value, '0123456789') == 0) then
-            read (value, *, iostat=status) command%threads
-            if (status == 0 .and. command%threads > 0) return
-         end if
-         call usage_error(error, '--threads '''//value//''' is not a positive integer')
+         call parse_integer(value, command%threads, cause)
+         if (.not. allocated(cause) .and. command%threads > 0 .and. &
+               command%threads <= most_threads) return
+         call usage_error(error, '--threads '''//value//''' is not an integer from 1 to '// &
+               to_text(most_threads))
       end select
    end subroutine read_option
 
@@ -194,13 +198,12 @@ contains
    function plain_number(word) result(number)
       character(len=*), intent(in) :: word
       real(wp) :: number
-      integer :: status
+      character(len=:), allocatable :: cause
 
-      number = ieee_value(number, ieee_quiet_nan)
-      if (len(word) == 0 .or. len(word) > 18) return
-      if (verify(word, '0123456789.') > 0 .or. verify(word, '.') == 0) return
-      read (word, *, iostat=status) number
-      if (status /= 0) number = ieee_value(number, ieee_quiet_nan)
+      call parse_real(word, number, cause)
+      if (allocated(cause) .or. verify(word, '0123456789.') > 0) then
+         number = ieee_value(number, ieee_quiet_nan)
+      end if
    end function plain_number
 
    !> Checks what belongs together and fills in the name of the result file.

@@ -7,6 +7,7 @@ module simulation
    use part_file, only: check_output
    use cost_account, only: start_clock, enter, leave, phase_read, phase_build, phase_output
    use steps, only: procedure_frequency
+   use hdf5_file, only: hdf5_file_type
    use result_file, only: close_results
    use command_line, only: command_type
    use publishing, only: start_publishing
@@ -85,7 +86,7 @@ contains
       call remove_stop_files(output%watch)
       call end_progress(output%progress)
       call close_results(output%results, simulation%scene, close_error)
-      call merge_errors(error, close_error, output%results%file%remark())
+      call merge_errors(error, close_error, output%results%file)
       call report_summary(simulation, output%log)
       if (.not. allocated(error)) call advise_end(lessons, simulation)
       call report_advice(lessons, output%log)
@@ -97,15 +98,17 @@ contains
 
    !> What stopped the run, and what became of its results. A file that could not be written is told
    !> in the words of its closing, which knows how that ended.
-   subroutine merge_errors(error, close_error, remark)
+   subroutine merge_errors(error, close_error, file)
       type(error_type), allocatable, intent(inout) :: error, close_error
-      character(len=*), intent(in) :: remark     !! on the results, empty for none
+      type(hdf5_file_type), intent(in) :: file   !! of the results, closed
+      character(len=:), allocatable :: remark
       logical :: superseded
 
       superseded = .not. allocated(error)
-      if (.not. superseded) superseded = error%status == status_file .or. &
-            error%status == status_interrupted
+      if (.not. superseded) superseded = error%status == status_interrupted .or. &
+            (error%status == status_file .and. file%saved)
       if (superseded .and. allocated(close_error)) call move_alloc(close_error, error)
+      remark = file%remark()
       if (.not. allocated(error) .or. len(remark) == 0) return
       error%message = error%message//new_line('a')//'  results: '//remark
    end subroutine merge_errors

@@ -58,6 +58,7 @@ contains
       taken = .false.
       associate (simulation => self%simulation, course => self%course)
          if (course%step == 0) call begin_course(course, 1, simulation%motion%motion%t)
+         if (simulation%model%steps(course%step)%procedure == procedure_frequency) return
          if (is_fresh(course)) call start_step(simulation, course%step, error)
          if (allocated(error)) return
          call take_next(simulation, course, self%log, self%watch, taken, error)
