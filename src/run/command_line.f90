@@ -190,7 +190,7 @@ contains
          if (colon == 0) colon = len(value) - first + 2
          seconds = 60.0_wp*seconds + plain_number(value(first:first + colon - 2))
          first = first + colon
-         if (first > len(value)) exit
+         if (first > len(value) + 1) exit
       end do
       if (.not. seconds > 0.0_wp .or. first <= len(value)) call usage_error(error, &
             '--time-limit '''//value//''' is neither seconds nor HH:MM:SS')
