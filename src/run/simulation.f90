@@ -82,6 +82,7 @@ contains
       if (allocated(error)) return
       call run_steps(simulation, command, restart, course, output, error)
       call keep_if_interrupted(simulation, course, output, error)
+      call tell_how_to_go_on(command, error)
       call remove_stop_files(output%watch)
       call end_progress(output%progress)
       call close_results(output%results, simulation%scene, close_error)
@@ -111,6 +112,22 @@ contains
       if (.not. allocated(error) .or. len(remark) == 0) return
       error%message = error%message//new_line('a')//'  results: '//remark
    end subroutine merge_errors
+
+   !> The cure of an interruption.
+   subroutine tell_how_to_go_on(command, error)
+      type(command_type), intent(in) :: command
+      type(error_type), allocatable, intent(inout) :: error
+      integer :: i
+
+      if (.not. allocated(error)) return
+      if (error%status /= status_interrupted) return
+      error%message = error%message//new_line('a')//'  to go on: carom run '//command%deck &
+            //' --restart '//command%output
+      do i = 1, size(command%definitions)
+         error%message = error%message//' --define '//command%definitions(i)%name//'=' &
+               //command%definitions(i)%value
+      end do
+   end subroutine tell_how_to_go_on
 
    !> The last line of the log: how the run ended; what a message says beyond its first line, as the
    !> cure, goes before.
