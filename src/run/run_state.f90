@@ -31,12 +31,15 @@ contains
       type(course_type), intent(inout) :: course           !! as it was
       type(archive_type), intent(out) :: archive
       type(kept_solutions_type) :: kept
+      integer :: n
 
       archive%reading = .false.
       call note_kept(kept, simulation%scene)
       call pass_course(simulation, course, archive)
       call pass_all(simulation, kept, archive)
       call pass_counts(simulation, archive)
+      n = archive%n + 1
+      call archive%pass('entries', n)
    end subroutine collect_state
 
    !> Puts the state into a simulation at its start. Errors: the archive is not one of this deck,
@@ -47,8 +50,14 @@ contains
       type(archive_type), intent(inout) :: archive
       type(error_type), allocatable, intent(out) :: error
       type(kept_solutions_type) :: kept
+      integer :: n
 
       archive%reading = .true.
+      n = 0
+      call archive%pass('entries', n)
+      call archive%demand('entries', archive%n >= n)
+      call check_archive(archive, error)
+      if (allocated(error)) return
       call pass_course(simulation, course, archive)
       call check_archive(archive, error)
       if (allocated(error)) return
