@@ -1,6 +1,7 @@
 !> The one list of keywords: where each may stand, its parameters, what its data lines hold.
 module card_rules
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use places, only: place_type, source_type, fail_at
    use words, only: word_length, squeezed, find_word, advice
    use cards, only: card_type, parameter_type, has_parameter
@@ -268,10 +269,11 @@ contains
       integer, intent(in) :: rule
       character(len=word_length), allocatable :: list(:)
       character(len=word_length) :: word
-      integer :: k, n
+      integer :: k, n, status
 
       n = parameter_count(rule)
-      allocate (list(n))
+      allocate (list(n), stat=status)
+      call check_allocation(status)
       do k = 1, n
          word = parameter_word(rule, k)
          if (word(1:1) == '~') word = word(2:)

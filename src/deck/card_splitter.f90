@@ -1,6 +1,7 @@
 !> The deck's files cut into keyword cards and data lines; *INCLUDE is followed here.
 module card_splitter
    use errors, only: error_type, new_error, status_file, status_deck
+   use memory_shortage, only: check_allocation
    use places, only: place_type, source_type, source_file_type, source_line, fail_at
    use words, only: squeezed, is_blank
    use cards, only: card_type, deck_type, parameter_type, parameter_index
@@ -32,8 +33,10 @@ contains
       character(len=*), intent(in) :: path
       type(error_type), allocatable, intent(out) :: error   !! status_file: the deck is not there
       type(progress_type) :: progress
+      integer :: status
 
-      allocate (deck%cards(64), deck%data(1024))
+      allocate (deck%cards(64), deck%data(1024), stat=status)
+      call check_allocation(status)
       call add_file(source, path, error)
       if (allocated(error)) return
       call split_file(deck, source, 1, progress, error)
@@ -105,6 +108,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(place_type), allocatable :: longer(:)
       type(place_type) :: place
+      integer :: status
 
       place%file = file
       place%line = line
@@ -116,7 +120,8 @@ contains
       associate (card => deck%cards(deck%n_cards))
          if (card%place%file == file) place%card = card%place%line
          if (deck%n_data == size(deck%data)) then
-            allocate (longer(2*deck%n_data))
+            allocate (longer(2*deck%n_data), stat=status)
+            call check_allocation(status)
             longer(:deck%n_data) = deck%data
             call move_alloc(longer, deck%data)
          end if
@@ -136,8 +141,10 @@ contains
       type(card_type) :: card
       type(place_type) :: place
       logical :: continued
+      integer :: status
 
-      allocate (card%parameters(0))
+      allocate (card%parameters(0), stat=status)
+      call check_allocation(status)
       card%keyword = ''
       card%first = deck%n_data + 1
       card%last = deck%n_data
@@ -212,10 +219,11 @@ contains
       type(place_type), intent(in) :: place
       integer, intent(in) :: column
       type(parameter_type), allocatable :: longer(:)
-      integer :: i, n, equals
+      integer :: i, n, equals, status
 
       n = size(card%parameters)
-      allocate (longer(n + 1))
+      allocate (longer(n + 1), stat=status)
+      call check_allocation(status)
       do i = 1, n
          longer(i) = card%parameters(i)
       end do
@@ -236,10 +244,11 @@ contains
       type(deck_type), intent(inout) :: deck
       type(card_type), intent(in) :: card
       type(card_type), allocatable :: longer(:)
-      integer :: i
+      integer :: i, status
 
       if (deck%n_cards == size(deck%cards)) then
-         allocate (longer(2*deck%n_cards))
+         allocate (longer(2*deck%n_cards), stat=status)
+         call check_allocation(status)
          do i = 1, deck%n_cards
             longer(i) = deck%cards(i)
          end do

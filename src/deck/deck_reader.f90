@@ -1,6 +1,7 @@
 !> A deck file to a model: cuts it into cards, then lets one reader a family fill its part.
 module deck_reader
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use places, only: fail_at, note_at, source_line
    use model, only: model_type
    use histories, only: boundary_type, nodal_value_type
@@ -37,8 +38,10 @@ contains
       type(definition_type), intent(in) :: definitions(:)   !! override *PARAMETER of the same name
       type(error_type), allocatable, intent(out) :: error   !! its status tells which kind
       type(deck_type) :: deck
+      integer :: status
 
-      allocate (model%notes(0))
+      allocate (model%notes(0), stat=status)
+      call check_allocation(status)
       call split_deck(deck, model%source, path, error)
       if (allocated(error)) return
       call read_symbols(deck, model%source, error)

@@ -2,6 +2,7 @@
 module source_reader
    use, intrinsic :: iso_fortran_env, only: int64
    use errors, only: error_type, new_error, status_file
+   use memory_shortage, only: check_allocation
    use file_calls, only: file_facts_type, look_at, is_regular
    use places, only: source_type, source_file_type, source_line_type, place_type, fail_at
    use places, only: new_source_file
@@ -66,7 +67,8 @@ contains
          call new_error(error, status_file, "cannot read '"//path//"': not a file of text")
          return
       end if
-      allocate (character(len=int(length)) :: content)
+      allocate (character(len=int(length)) :: content, stat=status)
+      call check_allocation(status)
       if (length > 0) read (unit, iostat=status, iomsg=reason) content
       close (unit)
       if (status /= 0) then
@@ -116,11 +118,15 @@ contains
    pure subroutine make_room(source)
       type(source_type), intent(inout) :: source
       type(source_file_type), allocatable :: files(:)
-      integer :: i
+      integer :: i, status
 
-      if (.not. allocated(source%files)) allocate (source%files(4))
+      if (.not. allocated(source%files)) then
+         allocate (source%files(4), stat=status)
+         call check_allocation(status)
+      end if
       if (source%n_files < size(source%files)) return
-      allocate (files(2*size(source%files)))
+      allocate (files(2*size(source%files)), stat=status)
+      call check_allocation(status)
       do i = 1, source%n_files
          call move_alloc(source%files(i)%name, files(i)%name)
          call move_alloc(source%files(i)%content, files(i)%content)
@@ -136,11 +142,12 @@ contains
       type(source_line_type), allocatable, intent(inout) :: notes(:)
       character(len=*), intent(in) :: remark
       type(source_line_type), allocatable :: longer(:)
-      integer :: i, n
+      integer :: i, n, status
 
       n = 0
       if (allocated(notes)) n = size(notes)
-      allocate (longer(n + 1))
+      allocate (longer(n + 1), stat=status)
+      call check_allocation(status)
       do i = 1, n
          call move_alloc(notes(i)%text, longer(i)%text)
       end do

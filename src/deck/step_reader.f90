@@ -2,6 +2,7 @@
 module step_reader
    use kinds, only: wp
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use places, only: source_type, fail_at
    use steps, only: step_type, procedure_static, procedure_dynamic, procedure_frequency, &
          solver_mumps
@@ -27,11 +28,12 @@ contains
       type(model_type), intent(inout) :: model
       type(deck_type), intent(in) :: deck
       type(error_type), allocatable, intent(out) :: error
-      integer :: s, n
+      integer :: s, n, status
 
       n = 0
       if (deck%n_cards > 0) n = maxval(deck%cards(:deck%n_cards)%step)
-      allocate (model%steps(n))
+      allocate (model%steps(n), stat=status)
+      call check_allocation(status)
       do s = 1, n
          call read_step(model, s, deck, error)
          if (allocated(error)) return

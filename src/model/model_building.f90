@@ -1,5 +1,6 @@
 !> Putting a model together: appending in amortised constant time, and finding by name.
 module model_building
+   use memory_shortage, only: check_allocation
    use mesh, only: set_type
    use properties, only: material_type
    use surfaces, only: surface_type, rigid_surface_type, interaction_type
@@ -98,10 +99,15 @@ contains
       integer, intent(inout) :: n
       integer, intent(in) :: item
       integer, allocatable :: longer(:)
+      integer :: status
 
-      if (.not. allocated(list)) allocate (list(8))
+      if (.not. allocated(list)) then
+         allocate (list(8), stat=status)
+         call check_allocation(status)
+      end if
       if (n == size(list)) then
-         allocate (longer(2*n + 8))
+         allocate (longer(2*n + 8), stat=status)
+         call check_allocation(status)
          longer(:n) = list
          call move_alloc(longer, list)
       end if
@@ -114,10 +120,15 @@ contains
       integer, intent(inout) :: n
       type(boundary_type), intent(in) :: item
       type(boundary_type), allocatable :: longer(:)
+      integer :: status
 
-      if (.not. allocated(list)) allocate (list(8))
+      if (.not. allocated(list)) then
+         allocate (list(8), stat=status)
+         call check_allocation(status)
+      end if
       if (n == size(list)) then
-         allocate (longer(2*n + 8))
+         allocate (longer(2*n + 8), stat=status)
+         call check_allocation(status)
          longer(:n) = list
          call move_alloc(longer, list)
       end if
@@ -130,10 +141,15 @@ contains
       integer, intent(inout) :: n
       type(nodal_value_type), intent(in) :: item
       type(nodal_value_type), allocatable :: longer(:)
+      integer :: status
 
-      if (.not. allocated(list)) allocate (list(8))
+      if (.not. allocated(list)) then
+         allocate (list(8), stat=status)
+         call check_allocation(status)
+      end if
       if (n == size(list)) then
-         allocate (longer(2*n + 8))
+         allocate (longer(2*n + 8), stat=status)
+         call check_allocation(status)
          longer(:n) = list
          call move_alloc(longer, list)
       end if
@@ -144,24 +160,36 @@ contains
    pure subroutine fit_integers(list, n)
       integer, allocatable, intent(inout) :: list(:)
       integer, intent(in) :: n
+      integer :: status
 
-      if (.not. allocated(list)) allocate (list(0))
+      if (.not. allocated(list)) then
+         allocate (list(0), stat=status)
+         call check_allocation(status)
+      end if
       if (size(list) > n) list = list(:n)
    end subroutine fit_integers
 
    pure subroutine fit_boundaries(list, n)
       type(boundary_type), allocatable, intent(inout) :: list(:)
       integer, intent(in) :: n
+      integer :: status
 
-      if (.not. allocated(list)) allocate (list(0))
+      if (.not. allocated(list)) then
+         allocate (list(0), stat=status)
+         call check_allocation(status)
+      end if
       if (size(list) > n) list = list(:n)
    end subroutine fit_boundaries
 
    pure subroutine fit_nodal_values(list, n)
       type(nodal_value_type), allocatable, intent(inout) :: list(:)
       integer, intent(in) :: n
+      integer :: status
 
-      if (.not. allocated(list)) allocate (list(0))
+      if (.not. allocated(list)) then
+         allocate (list(0), stat=status)
+         call check_allocation(status)
+      end if
       if (size(list) > n) list = list(:n)
    end subroutine fit_nodal_values
 
@@ -169,12 +197,13 @@ contains
    pure subroutine sort_unique(list)
       integer, allocatable, intent(inout) :: list(:)
       integer, allocatable :: other(:)
-      integer :: i, n, width
+      integer :: i, n, width, status
 
       n = size(list)
       if (n < 2) return
       if (any(list(2:) <= list(:n - 1))) then
-         allocate (other(n))
+         allocate (other(n), stat=status)
+         call check_allocation(status)
          width = 1
          do while (width < n)
             call merge_runs(list, other, width)

@@ -2,6 +2,7 @@
 module places
    use errors, only: error_type, new_error, status_deck
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -47,7 +48,7 @@ contains
       type(source_file_type), intent(out) :: self
       character(len=*), intent(in) :: name
       character(len=:), allocatable, intent(inout) :: content   !! not allocated afterwards
-      integer :: i, n, length
+      integer :: i, n, length, status
 
       length = len(content)
       n = 0
@@ -57,7 +58,8 @@ contains
       if (length > 0) then
          if (iachar(content(length:length)) /= code_lf) n = n + 1
       end if
-      allocate (self%first(n), self%last(n))
+      allocate (self%first(n), self%last(n), stat=status)
+      call check_allocation(status)
       self%name = name
       self%n_lines = n
       n = 1

@@ -15,8 +15,8 @@ module hdf5_output
    use errors, only: error_type, new_error, status_file
    use clock, only: seconds_now
    use file_calls, only: is_regular, look_at
-   use part_file, only: part_file_type, claim, publish, finish, discard, reserve_room, forget_room, &
-         is_claimed, has_published, part_path
+   use part_file, only: part_file_type, claim, publish, finish, discard, reserve_room, &
+         forget_room, is_claimed, has_published, part_path
    use, intrinsic :: iso_c_binding, only: c_ptr
    use hdf5_calls, only: hsize_t, make_group, put_dataset, storage_type
    use hdf5_changes, only: cut_rows, has_object, overwrite_dataset, remove_object
@@ -28,6 +28,8 @@ module hdf5_output
 
    !> Bytes kept free beyond all that is written in mid-run, for what a run adds when it ends.
    integer(int64), parameter :: margin = 2_int64**18
+   !> The same when there is no more: then the run ends, and what still fits is written.
+   integer(int64), parameter :: last_margin = 2_int64**14
    !> At the end of longer runs the program waits for the disk, seconds. That costs 15 to 40 ms,
    !> as much as a short run; one that a power failure takes away is soon run again.
    real(wp), parameter :: worth_waiting = 1.0_wp
@@ -160,7 +162,7 @@ contains
       if (failed) then
          call self%write_failure('more', error)
       else
-         call reserve_room(self%place, size + bytes + merge(0_int64, margin, self%full), error)
+         call reserve_room(self%place, size + bytes + merge(last_margin, margin, self%full), error)
          self%full = self%full .or. allocated(error)
       end if
    end subroutine reserve
@@ -277,15 +279,17 @@ contains
       class(hdf5_output_type), intent(inout) :: self
       character(len=*), intent(in) :: path
       integer(int64), intent(in) :: n_rows
-      logical, intent(out) :: short   !! it has fewer rows, or is not there
+      character(len=:), allocatable, intent(out) :: short   !! its path if it has not so many
       type(error_type), allocatable, intent(out) :: error   !! status_file
       integer(hsize_t) :: n_missing
       logical :: failed
 
-      short = .not. self%holds(path)
-      if (short) return
+      if (.not. self%holds(path)) then
+         short = path
+         return
+      end if
       call cut_rows(self%id, path, int(n_rows, hsize_t), n_missing, failed)
-      short = n_missing > 0
+      if (n_missing > 0) short = path
       if (failed) call self%write_failure(path, error)
    end subroutine cut
 
@@ -344,7 +348,8 @@ contains
       if (allocated(self%path)) path = self%path
       self%broken = self%broken .or. is_claimed(self%place)
       call new_error(error, status_file, 'cannot write '//object//" to '"//path// &
-            "': disk full, no access any more, or the file is not open")
+            "': the disk fails or is full, there is no access any more, or the file is not open" &
+            //new_line('a')//'  cure: see whether the disk has room and is in order')
    end subroutine write_failure
 
 end module hdf5_output

@@ -44,7 +44,7 @@ contains
             //nl// &
             '                      [--overwrite | --restart OLD.h5] [--memory SIZE]'//nl// &
             '                      [--time-limit TIME]'//nl// &
-            '       carom check DECK [--define NAME=VALUE]...'//nl// &
+            '       carom check DECK [--define NAME=VALUE]... [--memory SIZE]'//nl// &
             '       carom --version | --help'//nl//nl// &
             '  run      computes the deck; writes OUT.h5, OUT.log and OUT.sta'//nl// &
             '           (default: beside the deck, with its name)'//nl// &
@@ -154,7 +154,7 @@ contains
       end select
    end subroutine read_option
 
-   !> A size in bytes, or with K, M, G or T behind it (powers of 1024).
+   !> A size in bytes, or with K, M, G or T behind it (powers of 1000, as in MB of messages).
    subroutine read_memory(value, bytes, error)
       character(len=*), intent(in) :: value
       real(wp), intent(out) :: bytes
@@ -165,7 +165,7 @@ contains
       power = index('KMGT', upper_case(value(max(1, length):)))
       if (length == 0) power = 0
       if (power > 0) length = length - 1
-      bytes = plain_number(value(:length))*1024.0_wp**power
+      bytes = plain_number(value(:length))*1000.0_wp**power
       if (.not. bytes > 0.0_wp) call usage_error(error, '--memory '''//value &
             //''' is not a size such as 500M or 12G')
    end subroutine read_memory

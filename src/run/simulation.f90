@@ -1,24 +1,25 @@
 !> The run: deck, scene, files, the steps one after the other, and how it ended.
 module simulation
    use errors, only: error_type, status_file, status_interrupted
+   use text, only: to_text
    use stop_signals, only: catch_signals
    use file_calls, only: ignore_signals
    use part_file, only: part_file_type, check_output, discard
    use cost_account, only: start_clock, enter, leave, phase_read, phase_build, phase_output
    use steps, only: procedure_frequency
-   use deck_reader, only: read_deck
+   use hdf5_file, only: hdf5_file_type
    use result_file, only: open_results, close_results
    use command_line, only: command_type
    use output_files, only: claim_output, log_stem
    use publishing, only: start_publishing
    use run_log, only: log_type, open_log, close_log, say
-   use stop_request, only: start_watch, remove_stop_files
+   use stop_request, only: start_watch, start_looking, look_for_stop, stop_run, remove_stop_files
    use progress, only: start_progress, end_progress
    use scene_setup, only: simulation_type, initial_motion
    use frequency_run, only: run_frequency_step
    use scene_advice, only: advice_list_type, advise_end
    use feature_report, only: report_advice
-   use deck_check, only: prepare, report_preview
+   use deck_check, only: read_model, prepare, report_preview
    use run_report, only: report_model, report_notes, report_summary
    use course, only: course_type, begin_course
    use run_output, only: output_type
@@ -53,7 +54,7 @@ contains
          call check_output(command%output, command%overwrite, error)
          if (allocated(error)) return
          call enter(cost, phase_read, outer)
-         call read_deck(simulation%model, command%deck, command%definitions, error)
+         call read_model(simulation%model, command, output%preview, error)
          call leave(cost, outer)
          if (allocated(error)) return
          call enter(cost, phase_build, outer)
@@ -75,7 +76,7 @@ contains
       call remove_stop_files(output%watch)
       call end_progress(output%progress)
       call close_results(output%results, simulation%scene, close_error)
-      call merge_errors(error, close_error, output%results%file%remark())
+      call merge_errors(error, close_error, output%results%file)
       call report_summary(simulation, output%log)
       if (.not. allocated(error)) call advise_end(lessons, simulation)
       call report_advice(lessons, output%log)
@@ -87,15 +88,17 @@ contains
 
    !> What stopped the run, and what became of its results. A file that could not be written is told
    !> in the words of its closing, which knows how that ended.
-   subroutine merge_errors(error, close_error, remark)
+   subroutine merge_errors(error, close_error, file)
       type(error_type), allocatable, intent(inout) :: error, close_error
-      character(len=*), intent(in) :: remark     !! on the results, empty for none
+      type(hdf5_file_type), intent(in) :: file   !! of the results, closed
+      character(len=:), allocatable :: remark
       logical :: superseded
 
       superseded = .not. allocated(error)
-      if (.not. superseded) superseded = error%status == status_file .or. &
-            error%status == status_interrupted
+      if (.not. superseded) superseded = error%status == status_interrupted .or. &
+            (error%status == status_file .and. file%saved)
       if (superseded .and. allocated(close_error)) call move_alloc(close_error, error)
+      remark = file%remark()
       if (.not. allocated(error) .or. len(remark) == 0) return
       error%message = error%message//new_line('a')//'  results: '//remark
    end subroutine merge_errors
@@ -146,12 +149,31 @@ contains
       do i = max(1, course%step), size(simulation%model%steps)
          if (i > course%step) call begin_course(course, i, simulation%motion%motion%t)
          if (simulation%model%steps(i)%procedure == procedure_frequency) then
-            call run_frequency_step(simulation, i, output%results, output%log, error)
+            call do_frequency_step(simulation, course, output, error)
          else
             call run_step(simulation, course, output, error)
          end if
          if (allocated(error)) return
       end do
    end subroutine run_steps
+
+   !> A frequency step, which is finished once it has begun.
+   subroutine do_frequency_step(simulation, course, output, error)
+      type(simulation_type), intent(inout) :: simulation
+      type(course_type), intent(inout) :: course
+      type(output_type), intent(inout) :: output
+      type(error_type), allocatable, intent(out) :: error
+      logical :: asked
+
+      if (course%entered) return
+      call run_frequency_step(simulation, course%step, output%results, output%log, error)
+      if (allocated(error)) return
+      course%entered = .true.
+      if (course%step == size(simulation%model%steps)) return
+      call start_looking(output%watch)
+      call look_for_stop(output%watch, asked)
+      if (asked) call stop_run(output%watch, 'after step '//to_text(course%step), &
+            simulation%motion%motion%t, error)
+   end subroutine do_frequency_step
 
 end module simulation
