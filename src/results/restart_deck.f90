@@ -1,6 +1,7 @@
 !> The deck that a result file was computed from, as /model/deck and /restart/deck have it.
 module restart_deck
    use errors, only: error_type, new_error, status_file
+   use memory_shortage, only: check_allocation
    use places, only: source_type, new_source_file
    use hdf5_reader, only: hdf5_reader_type
    implicit none
@@ -22,7 +23,7 @@ contains
       character(len=definition_length), allocatable :: files(:)
       integer, allocatable :: n_lines(:)
       character(len=:), allocatable :: text
-      integer :: i, first, last
+      integer :: i, first, last, status
       logical :: sound
 
       call reader%read_texts('/restart/deck/files', definition_length, files, error)
@@ -33,7 +34,8 @@ contains
       sound = .not. allocated(error)
       if (sound) sound = size(files) == size(n_lines)
       if (sound) then
-         allocate (source%files(size(files)))
+         allocate (source%files(size(files)), stat=status)
+         call check_allocation(status)
          source%n_files = size(files)
          last = 0
          do i = 1, size(files)

@@ -5,6 +5,7 @@ module command_line
    use text, only: upper_case, to_text
    use numbers, only: parse_integer, parse_real
    use errors, only: error_type, new_error, status_usage
+   use memory_shortage, only: check_allocation
    use deck_reader, only: definition_type
    implicit none
    private
@@ -67,9 +68,10 @@ contains
       type(command_type), intent(out) :: command
       type(error_type), allocatable, intent(out) :: error
       character(len=:), allocatable :: word
-      integer :: i
+      integer :: i, status
 
-      allocate (command%definitions(0))
+      allocate (command%definitions(0), stat=status)
+      call check_allocation(status)
       if (command_argument_count() == 0) return
       select case (argument(1))
       case ('run')
@@ -188,7 +190,7 @@ contains
          if (colon == 0) colon = len(value) - first + 2
          seconds = 60.0_wp*seconds + plain_number(value(first:first + colon - 2))
          first = first + colon
-         if (first > len(value)) exit
+         if (first > len(value) + 1) exit
       end do
       if (.not. seconds > 0.0_wp .or. first <= len(value)) call usage_error(error, &
             '--time-limit '''//value//''' is neither seconds nor HH:MM:SS')
@@ -259,10 +261,11 @@ contains
    function argument(i) result(word)
       integer, intent(in) :: i
       character(len=:), allocatable :: word
-      integer :: length
+      integer :: length, status
 
       call get_command_argument(i, length=length)
-      allocate (character(len=length) :: word)
+      allocate (character(len=length) :: word, stat=status)
+      call check_allocation(status)
       call get_command_argument(i, word)
    end function argument
 
