@@ -40,6 +40,8 @@ module memory_estimate
       procedure :: total
    end type memory_type
 
+   !> Arrays of the state that is gathered to be saved.
+   real(wp), parameter :: n_saved = 6.0_wp
    !> States that automatic increments of a motion keep: that of the coarse motion, those to be put
    !> back, that at the start of the step.
    real(wp), parameter :: n_states_kept = 6.0_wp
@@ -66,6 +68,8 @@ contains
                   + real_bytes*n_states_kept*(4.0_wp*n_freedoms + n_history)
          end if
       end associate
+      if (any(simulation%model%steps%restart_frequency > 0)) self%items(item_state) = &
+            self%items(item_state) + real_bytes*(n_saved*n_freedoms + n_history)
       self%items(item_contact) = real_bytes*contact_entries(simulation)
       call add_output(self, simulation)
    end subroutine estimate_memory
