@@ -3,14 +3,14 @@ module pair_reader
    use kinds, only: wp
    use errors, only: error_type
    use memory_shortage, only: check_allocation
-   use places, only: fail_at, line_text
+   use places, only: source_type, fail_at, line_text
    use properties, only: name_length
    use surfaces, only: contact_pair_type
    use model, only: model_type
    use name_map, only: name_map_type
    use text, only: to_text
    use cards, only: deck_type, card_type, get_word, get_name_parameter, get_real_parameter
-   use cards, only: has_parameter, parameter_index, parameter_place
+   use cards, only: has_parameter, parameter_index, parameter_place, get_integer_parameter
    use fields, only: fields_type, split_line, check_count, field_place, get_name
    use words, only: word_length, advice
    implicit none
@@ -83,7 +83,6 @@ contains
       type(error_type), allocatable, intent(out) :: error
       character(len=word_length), parameter :: types(*) = [character(len=word_length) :: &
             'NODE TO SURFACE', 'SURFACE TO SURFACE']
-      character(len=word_length), parameter :: passes(*) = [character(len=word_length) :: '1', '2']
       character(len=word_length), parameter :: masses(*) = [character(len=word_length) :: &
             'REDISTRIBUTED']
       character(len=name_length) :: name
@@ -92,9 +91,8 @@ contains
       call get_word(card, 'TYPE', types, choice, model%source, error)
       if (allocated(error)) return
       pair%weighted = choice == 2
-      call get_word(card, 'PASSES', passes, choice, model%source, error)
+      call read_passes(pair, model%source, card, error)
       if (allocated(error)) return
-      pair%passes = max(1, choice)
       call get_word(card, 'MASS', masses, choice, model%source, error)
       if (allocated(error)) return
       pair%redistributed = choice == 1
@@ -108,6 +106,20 @@ contains
             parameter_place(card, 'INTERACTION'), 'no such surface interaction: '//trim(name), &
             cure='define it with *SURFACE INTERACTION; '//advice(name, [model%interactions%name]))
    end subroutine read_options
+
+   !> PASSES: 1 or 2.
+   subroutine read_passes(pair, source, card, error)
+      type(contact_pair_type), intent(inout) :: pair
+      type(source_type), intent(in) :: source
+      type(card_type), intent(in) :: card
+      type(error_type), allocatable, intent(out) :: error
+
+      pair%passes = 1
+      call get_integer_parameter(card, 'PASSES', 1, pair%passes, source, error)
+      if (allocated(error)) return
+      if (pair%passes > 2) call fail_at(error, source, parameter_place(card, 'PASSES'), &
+            'PASSES is out of range', cure='write 1 or 2')
+   end subroutine read_passes
 
    !> ADJUST, or ADJUST=distance.
    subroutine read_adjustment(pair, model, card, error)

@@ -1,5 +1,5 @@
-!> The calls to the HDF5 library, with those of hdf5_opening and hdf5_changes the only ones: datasets,
-!> attributes and growing datasets by path. hdf5_file and hdf5_reader give them types and messages.
+!> The calls to the HDF5 library, with those of hdf5_opening and hdf5_changes the only ones:
+!> datasets, attributes and growing datasets by path. hdf5_file and hdf5_reader give them types.
 module hdf5_calls
    use, intrinsic :: iso_c_binding, only: c_char, c_loc, c_ptr
    use hdf5, only: h5_integer_kind, h5aclose_f, h5acreate_f, h5aexists_f, h5aopen_f, h5awrite_f, &
@@ -26,6 +26,7 @@ module hdf5_calls
    type :: storage_type
       integer(hid_t) :: in_file = -1
       integer(hid_t) :: in_memory = -1
+      integer :: bytes = 8                       !! of a value in the file
    end type storage_type
 
    !> How a growing dataset is cut into chunks, each of which lies together in the file.
@@ -61,6 +62,7 @@ contains
    function byte_storage() result(storage)
       type(storage_type) :: storage
 
+      storage%bytes = 1
       storage%in_file = h5t_std_u8le
       storage%in_memory = h5t_std_u8le
    end function byte_storage
@@ -71,6 +73,7 @@ contains
       type(storage_type) :: storage
       integer :: status
 
+      storage%bytes = length
       call h5tcopy_f(h5t_fortran_s1, storage%in_memory, status)
       call h5tset_size_f(storage%in_memory, int(length, size_t), status)
       call h5tcopy_f(storage%in_memory, storage%in_file, status)

@@ -32,6 +32,7 @@ module restart_group
       integer, allocatable :: n_lines(:)                          ! of them
       character(len=name_length), allocatable :: definitions(:)   ! NAME=VALUE of the command line
       character(len=name_length), allocatable :: entries(:)
+      integer(int64) :: bytes = 0                                 ! of their values
    end type restart_group_type
 
 contains
@@ -69,7 +70,8 @@ contains
             'parameters replaced by --define', error)
    end subroutine write_deck_names
 
-   !> Writes the archive in the place of the one before.
+   !> Writes the archive in the place of the one before; where the disk has no room for it, that one
+   !> stays whole.
    subroutine write_state(self, file, archive, error)
       type(restart_group_type), intent(inout) :: self
       type(hdf5_file_type), intent(inout) :: file
@@ -80,6 +82,8 @@ contains
       integer :: i
 
       if (.not. allocated(self%entries)) call begin_group(self, file, error)
+      if (allocated(error)) return
+      call make_room(self, file, archive, error)
       if (allocated(error)) return
       do i = 1, archive%n
          call write_entry(file, archive%entries(i), error)
@@ -110,6 +114,28 @@ contains
       allocate (self%entries(0), stat=status)
       call check_allocation(status)
    end subroutine begin_group
+
+   !> Room for all entries, where they are not those of the state before.
+   subroutine make_room(self, file, archive, error)
+      type(restart_group_type), intent(inout) :: self
+      type(hdf5_file_type), intent(inout) :: file
+      type(archive_type), intent(in) :: archive
+      type(error_type), allocatable, intent(out) :: error
+      integer(int64), parameter :: header = 2048
+      integer(int64) :: bytes
+      integer :: i
+
+      bytes = 0
+      do i = 1, archive%n
+         associate (entry => archive%entries(i))
+            if (allocated(entry%reals)) bytes = bytes + 8_int64*size(entry%reals, kind=int64)
+            if (allocated(entry%integers)) bytes = bytes + 8_int64*size(entry%integers, kind=int64)
+         end associate
+      end do
+      if (archive%n == size(self%entries) .and. bytes == self%bytes) return
+      call file%reserve(bytes + (archive%n + 10)*header, error)
+      if (.not. allocated(error)) self%bytes = bytes
+   end subroutine make_room
 
    subroutine write_entry(file, entry, error)
       type(hdf5_file_type), intent(inout) :: file

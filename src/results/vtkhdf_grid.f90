@@ -116,8 +116,8 @@ contains
       do i = 1, size(step_lists)
          if (allocated(error)) return
          call file%create_series(root//'/Steps/'//trim(step_lists(i)), series_integer, &
-               step_components(i), most_frames, 'the same in each frame: the mesh does not change', &
-               error)
+               step_components(i), most_frames, &
+               'the same in each frame: the mesh does not change', error)
       end do
    end subroutine create_steps
 

@@ -46,7 +46,7 @@ contains
       text = 'carom '//version_text//': structural dynamics with impact'//nl//nl// &
             'usage: carom run DECK [-o OUT.h5] [--define NAME=VALUE]... [--threads N] [--quiet]' &
             //nl// &
-            '                      [--overwrite | --restart OLD.h5] [--memory SIZE]'//nl// &
+            '                      [--overwrite] [--restart OLD.h5] [--memory SIZE]'//nl// &
             '                      [--time-limit TIME]'//nl// &
             '       carom check DECK [--define NAME=VALUE]... [--memory SIZE]'//nl// &
             '       carom --version | --help'//nl//nl// &
@@ -57,7 +57,7 @@ contains
             '  --threads threads to work with (default: OMP_NUM_THREADS, else 1)'//nl// &
             '  --quiet  no progress on the terminal'//nl// &
             '  --overwrite  replaces results that exist'//nl// &
-            '  --restart  goes on from the state saved in OLD.h5'//nl// &
+            '  --restart  goes on from the state saved in OLD.h5, there or in OUT.h5'//nl// &
             '  --memory  what the run may take, as 500M or 12G (default: the machine''s)'//nl// &
             '  --time-limit  stops then with the state saved; seconds or HH:MM:SS'//nl//nl// &
             'exit status: 0 done, 1 usage, 2 deck, 3 file, 4 numerical, 5 interrupted, 6 internal'
@@ -190,7 +190,7 @@ contains
          if (colon == 0) colon = len(value) - first + 2
          seconds = 60.0_wp*seconds + plain_number(value(first:first + colon - 2))
          first = first + colon
-         if (first > len(value)) exit
+         if (first > len(value) + 1) exit
       end do
       if (.not. seconds > 0.0_wp .or. first <= len(value)) call usage_error(error, &
             '--time-limit '''//value//''' is neither seconds nor HH:MM:SS')
@@ -224,6 +224,9 @@ contains
       end if
       if (allocated(command%output)) then
          call check_ending(command%output, error)
+         return
+      else if (allocated(command%restart)) then
+         command%output = command%restart
          return
       end if
       dot = index(command%deck, '.', back=.true.)
