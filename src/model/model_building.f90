@@ -109,7 +109,7 @@ contains
    pure integer function grown(n)
       integer, intent(in) :: n
 
-      if (n > (huge(n) - 8)/2) call check_allocation(n)
+      if (n > huge(n) - n - 8) call check_allocation(n)
       grown = 2*n + 8
    end function grown
 
