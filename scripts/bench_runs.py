@@ -82,7 +82,8 @@ class Programs:
         """A run of a deck: its seconds and memory, and what its log counts. With `late` one that is
         stopped at the limit counts up to there."""
         output = deck.with_suffix(".h5")
-        command = [self.carom, "run", deck, "-o", output, "--quiet", "--threads", threads]
+        command = [self.carom, "run", deck, "-o", output, "--quiet", "--overwrite",
+                   "--threads", threads]
         for name, value in definitions.items():
             command += ["--define", f"{name}={value}"]
         done = Finished(command, limit)

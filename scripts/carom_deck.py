@@ -349,7 +349,8 @@ def read_costs(result, log=""):
 def run_deck(carom, deck, result, define=None, threads=1, limit=None, begun=None):
     """Runs carom on a deck file; `limit` seconds at most, then the run is killed (`late`). `begun` is
     called with the process."""
-    words = [str(carom), "run", str(deck), "-o", str(result), "--quiet", "--threads", str(threads)]
+    words = [str(carom), "run", str(deck), "-o", str(result), "--quiet", "--overwrite",
+             "--threads", str(threads)]
     for name, value in (define or {}).items():
         words += ["--define", f"{name}={number_text(value)}"]
     for left in (Path(result), Path(result).with_suffix(".log")):

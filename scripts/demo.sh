@@ -10,7 +10,7 @@ mkdir -p demo
 
 compute() {
    say "running $1"
-   "$build/carom" run "$1" -o "$2" --quiet || fail "carom could not run $1"
+   "$build/carom" run "$1" -o "$2" --quiet --overwrite || fail "carom could not run $1"
 }
 
 draw() {

@@ -3,11 +3,12 @@
 program carom
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
    use, intrinsic :: iso_c_binding, only: c_int
-   use errors, only: error_type, status_done
+   use errors, only: error_type, status_done, status_interrupted
    use command_line, only: command_type, read_command, usage_text, version_text, &
          command_run, command_check, command_version
    use simulation, only: run_deck
    use deck_check, only: check_deck
+   use stop_signals, only: catch_signals
    use threads, only: set_threads
    use parallel_ranks, only: start_ranks, end_ranks, my_rank
    use mumps_solver, only: serve_rank_zero, dismiss_ranks
@@ -29,6 +30,7 @@ program carom
    call read_command(command, error)
    if (my_rank() > 0) then
       call set_threads(command%threads)
+      if (command%kind == command_run) call catch_signals()
       call serve_rank_zero(status)
       call end_ranks()
       call exit_process(int(status, c_int))
@@ -48,7 +50,8 @@ program carom
    end if
    status = status_done
    if (allocated(error)) then
-      write (error_unit, '(a)') 'error: '//error%message
+      write (error_unit, '(a)') trim(merge('stopped:', 'error:  ', error%status == &
+            status_interrupted))//' '//error%message
       status = error%status
    end if
    call dismiss_ranks(status)

@@ -1,6 +1,8 @@
 !> Freedoms whose motion the deck gives, through the steps of a run.
 module prescribed_motion
    use kinds, only: wp
+   use state_archive, only: archive_type
+   use memory_shortage, only: check_allocation
    use histories, only: amplitude_type, boundary_type, time_step, &
          motion_displacement, motion_velocity
    use amplitude_value, only: amplitude_at, amplitude_slope, amplitude_integral, &
@@ -27,6 +29,8 @@ module prescribed_motion
    !> All prescribed freedoms, each once.
    type :: motion_set_type
       type(motion_type), allocatable :: motions(:)
+   contains
+      procedure :: pass_state
    end type motion_set_type
 
 contains
@@ -42,11 +46,12 @@ contains
       real(wp), intent(in) :: span(2)                  !! start and length of the step
       logical, intent(in) :: static
       type(motion_type), allocatable :: list(:)
-      integer :: where_is(maxval(freedom)), i, f, n
+      integer :: where_is(maxval(freedom)), i, f, n, status
 
       n = 0
       where_is = 0
-      allocate (list(size(boundaries) + n_motions(self)))
+      allocate (list(size(boundaries) + n_motions(self)), stat=status)
+      call check_allocation(status)
       do i = 1, merge(n_motions(self), 0, keep)
          n = n + 1
          list(n) = self%motions(i)
@@ -64,6 +69,16 @@ contains
       end do
       self%motions = list(:n)
    end subroutine begin_motions
+
+   !> What conditions have taken from the motion; the rest is the deck's.
+   subroutine pass_state(self, archive)
+      class(motion_set_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call archive%pass_fixed('value', self%motions%value)
+      call archive%pass_fixed('d_start', self%motions%d_start)
+      call archive%pass_fixed('v_start', self%motions%v_start)
+   end subroutine pass_state
 
    !> Tells the conditions that came into force at time t where their freedoms were then.
    pure subroutine start_motions(self, t, d, v)

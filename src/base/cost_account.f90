@@ -7,6 +7,7 @@
 module cost_account
    use kinds, only: wp, int64
    use clock, only: seconds_now
+   use state_archive, only: archive_type
    implicit none
    private
 
@@ -59,9 +60,24 @@ module cost_account
       real(wp), private :: started = 0.0_wp, since = 0.0_wp, watched = 0.0_wp
       real(wp), private :: started_processor = 0.0_wp
       real(wp), private :: spent(phase_untimed, n_columns) = 0.0_wp
+   contains
+      procedure :: pass_state
    end type cost_type
 
 contains
+
+   !> The counters; a clock begins anew with its process.
+   subroutine pass_state(self, archive)
+      class(cost_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call archive%pass('increments', self%increments)
+      call archive%pass('element_updates', self%element_updates)
+      call archive%pass('energy_updates', self%energy_updates)
+      call archive%pass('stress_updates', self%stress_updates)
+      call archive%pass('contact_searches', self%contact_searches)
+      call archive%pass('contact_rows', self%contact_rows)
+   end subroutine pass_state
 
    !> Starts the clock.
    subroutine start_clock(self)

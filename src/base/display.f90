@@ -2,6 +2,7 @@
 !> all (control characters, marks of direction, blanks of no or strange width), and bytes that are
 !> no UTF-8, become escapes: \x9B for a byte, \u00A0 for a character.
 module display
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -14,13 +15,14 @@ contains
       character(len=*), intent(in) :: string
       character(len=:), allocatable :: text
       character(len=:), allocatable :: buffer, mark
-      integer :: i, n, code, length
+      integer :: i, n, code, length, status
 
       if (is_plain(string)) then
          text = string
          return
       end if
-      allocate (character(len=10*len(string)) :: buffer)
+      allocate (character(len=10*len(string)) :: buffer, stat=status)
+      call check_allocation(status)
       n = 0
       i = 1
       do while (i <= len(string))

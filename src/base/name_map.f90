@@ -1,6 +1,7 @@
 !> A map from names to positive integers (open addressing), so that lists of very many named things
 !> are searched in constant time.
 module name_map
+   use memory_shortage, only: check_allocation
    use kinds, only: int64
    implicit none
    private
@@ -39,11 +40,13 @@ contains
       class(name_map_type), intent(inout) :: self
       character(len=*), intent(in) :: name       !! name_length characters at most
       integer, intent(in) :: value               !! positive
-      integer :: slot
+      integer :: slot, status
 
       if (.not. allocated(self%values)) then
-         allocate (self%names(16))
-         allocate (self%values(16), source=0)
+         allocate (self%names(16), stat=status)
+         call check_allocation(status)
+         allocate (self%values(16), source=0, stat=status)
+         call check_allocation(status)
       end if
       if (2*self%n_names >= size(self%values)) call grow(self)
       slot = slot_of(self%names, self%values, name)
@@ -85,12 +88,14 @@ contains
       type(name_map_type), intent(inout) :: self
       character(len=name_length), allocatable :: names(:)
       integer, allocatable :: values(:)
-      integer :: i, slot
+      integer :: i, slot, status
 
       call move_alloc(self%names, names)
       call move_alloc(self%values, values)
-      allocate (self%names(2*size(values)))
-      allocate (self%values(2*size(values)), source=0)
+      allocate (self%names(2*size(values)), stat=status)
+      call check_allocation(status)
+      allocate (self%values(2*size(values)), source=0, stat=status)
+      call check_allocation(status)
       do i = 1, size(values)
          if (values(i) == 0) cycle
          slot = slot_of(self%names, self%values, names(i))

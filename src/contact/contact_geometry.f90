@@ -3,6 +3,9 @@
 !> as they are in the undeformed configuration.
 module contact_geometry
    use kinds, only: wp, int64
+   use text, only: to_text
+   use state_archive, only: archive_type
+   use memory_shortage, only: check_allocation
    use model, only: model_type
    use surfaces, only: rigid_surface_type
    use histories, only: amplitude_type
@@ -48,6 +51,8 @@ module contact_geometry
       real(wp), allocatable :: x(:, :)           !! (3, n_nodes) undeformed
       type(row_terms_type) :: frozen             !! the rows that stay as they are
       real(wp), allocatable :: allowance(:)      !! (n_rows) gap that counts as none, if allocated
+   contains
+      procedure :: pass_state
    end type contact_geometry_type
 
    !> Positions of all nodes before and after a motion, and how far a node looks for a partner.
@@ -65,7 +70,7 @@ contains
       type(model_type), intent(in) :: model
       type(contact_pair_list_type), intent(in) :: list
       type(positions_type) :: positions
-      integer :: i, n_passes, n_targets
+      integer :: i, n_passes, n_targets, status
 
       self%rows = list%rows
       self%amplitudes = model%amplitudes
@@ -78,7 +83,8 @@ contains
          n_passes = n_passes + 1
          if (list%rows(i)%kind == row_surface) n_targets = n_targets + 1
       end do
-      allocate (self%passes(n_passes), self%targets(n_targets))
+      allocate (self%passes(n_passes), self%targets(n_targets), stat=status)
+      call check_allocation(status)
       n_passes = 0
       n_targets = 0
       do i = 1, size(list%rows)
@@ -97,6 +103,21 @@ contains
          call place_pass(self, self%passes(i), positions, self%frozen)
       end do
    end subroutine new_contact_geometry
+
+   !> What searches leave behind, where rows move.
+   subroutine pass_state(self, archive)
+      class(contact_geometry_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+      integer :: i
+
+      if (.not. self%moving) return
+      do i = 1, size(self%targets)
+         call archive%enter('target_'//to_text(i))
+         call self%targets(i)%pass_state(archive)
+         call archive%leave()
+      end do
+      call archive%pass('n_searches', self%n_searches)
+   end subroutine pass_state
 
    !> From now on the gaps of all rows are counted from these.
    subroutine allow_gaps(self, allowance)

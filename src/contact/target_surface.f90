@@ -3,6 +3,8 @@
 !> of the surface, widens the boxes that are asked for, up to a slack.
 module target_surface
    use kinds, only: int64, wp
+   use state_archive, only: archive_type
+   use memory_shortage, only: check_allocation
    use segment_projection, only: edge_frame
    use edge_bins, only: edge_bins_type, find_in_box, new_bins
    implicit none
@@ -38,6 +40,9 @@ module target_surface
       real(wp), private :: slack = -1.0_wp       !! motion beside the drift that the bins allow
       real(wp), private :: reach = 0.0_wp        !! that the bins were built for
       real(wp), private :: least_slack = 0.0_wp
+      real(wp), private :: cell = 0.0_wp         !! smallest that the bins were built with
+   contains
+      procedure :: pass_state
    end type target_type
 
 contains
@@ -49,14 +54,15 @@ contains
       integer, intent(in) :: edges(:, :)         !! (3, n): the ends, the middle node or 0
       integer, intent(in) :: n_nodes             !! of the model
       integer, intent(in), optional :: element(:)   !! (n)
-      integer :: e, i, n
+      integer :: e, i, n, status
 
       n = size(edges, 2)
       self%edges = edges
       self%n_edge_nodes = merge(3, 2, edges(3, :) > 0)
       self%element = [(0, e=1, n)]
       if (present(element)) self%element = element
-      allocate (self%leaving(n_nodes), self%arriving(n_nodes), source=0)
+      allocate (self%leaving(n_nodes), self%arriving(n_nodes), source=0, stat=status)
+      call check_allocation(status)
       do e = n, 1, -1
          self%leaving(edges(1, e)) = e
          self%arriving(edges(2, e)) = e
@@ -64,7 +70,8 @@ contains
          self%leaving(edges(3, e)) = e
          self%arriving(edges(3, e)) = e
       end do
-      allocate (self%next(n), self%previous(n), self%found(n), source=0)
+      allocate (self%next(n), self%previous(n), self%found(n), source=0, stat=status)
+      call check_allocation(status)
       do e = 1, n
          i = self%leaving(edges(2, e))
          if (self%arriving(edges(2, e)) == e) self%next(e) = i
@@ -72,7 +79,8 @@ contains
          if (self%leaving(edges(1, e)) == e) self%previous(e) = i
       end do
       self%nodes = pack([(i, i=1, n_nodes)], self%leaving + self%arriving > 0)
-      allocate (self%built(2, size(self%nodes)), source=0.0_wp)
+      allocate (self%built(2, size(self%nodes)), source=0.0_wp, stat=status)
+      call check_allocation(status)
    end subroutine new_target
 
    !> Takes the positions of a step; to be called whenever they have changed. The bins are built
@@ -108,15 +116,35 @@ contains
       call build_bins(self, x_now, reach)
    end subroutine update_target
 
+   !> What the bins have been built from and with: they are built again. What is found does not
+   !> depend on them, but its order may.
+   subroutine pass_state(self, archive)
+      class(target_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+      real(wp) :: x(2, size(self%leaving))
+
+      call archive%pass('built', self%built)
+      call archive%pass('cell', self%cell)
+      call archive%pass('slack', self%slack)
+      if (archive%reading .and. self%slack > 0.0_wp) then
+         x = 0.0_wp
+         x(:, self%nodes) = self%built
+         call build_bins(self, x, self%cell)
+      end if
+      call archive%pass('n_tests', self%n_tests)
+      call archive%pass('n_builds', self%n_builds)
+   end subroutine pass_state
+
    pure subroutine build_bins(self, x_now, reach)
       type(target_type), intent(inout) :: self
       real(wp), intent(in) :: x_now(:, :)
       real(wp), intent(in) :: reach
       real(wp), allocatable :: low(:, :), high(:, :)
-      integer :: e
+      integer :: e, status
       real(wp) :: box(2, 2), least
 
-      allocate (low(2, size(self%edges, 2)), high(2, size(self%edges, 2)))
+      allocate (low(2, size(self%edges, 2)), high(2, size(self%edges, 2)), stat=status)
+      call check_allocation(status)
       do e = 1, size(self%edges, 2)
          box = edge_box(self, e, x_now)
          low(:, e) = box(:, 1)
@@ -126,6 +154,7 @@ contains
       self%least_slack = max(least/2.0_wp, 1.0e-6_wp*maxval(high - low))
       self%slack = max(reach, self%least_slack)
       self%reach = max(reach, self%slack)
+      self%cell = reach
       call new_bins(self%bins, low, high, reach)
       self%built = x_now(1:2, self%nodes)
       self%drift = 0.0_wp

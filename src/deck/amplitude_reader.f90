@@ -2,6 +2,7 @@
 module amplitude_reader
    use kinds, only: wp
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use places, only: fail_at
    use properties, only: name_length
    use histories, only: time_step, time_total
@@ -20,9 +21,10 @@ contains
       type(model_type), intent(inout) :: model
       type(deck_type), intent(in) :: deck
       type(error_type), allocatable, intent(out) :: error
-      integer :: i, n
+      integer :: i, n, status
 
-      allocate (model%amplitudes(count_cards(deck, 'AMPLITUDE')))
+      allocate (model%amplitudes(count_cards(deck, 'AMPLITUDE')), stat=status)
+      call check_allocation(status)
       n = 0
       do i = 1, deck%n_cards
          if (deck%cards(i)%keyword /= 'AMPLITUDE') cycle
@@ -41,7 +43,7 @@ contains
       character(len=word_length), parameter :: times(*) = [character(len=word_length) :: &
             'STEP TIME', 'TOTAL TIME']
       type(fields_type) :: fields
-      integer :: choice, line, k
+      integer :: choice, line, k, status
 
       associate (amplitude => model%amplitudes(n))
          call get_name_parameter(card, 'NAME', amplitude%name, model%source, error)
@@ -59,7 +61,8 @@ contains
          if (choice == 2) amplitude%time = time_total
          amplitude%place = card%place
          k = 4*(card%last - card%first + 1)
-         allocate (amplitude%t(k), amplitude%a(k))
+         allocate (amplitude%t(k), amplitude%a(k), stat=status)
+         call check_allocation(status)
       end associate
       k = 0
       do line = card%first, card%last

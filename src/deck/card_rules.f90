@@ -1,6 +1,7 @@
 !> The one list of keywords: where each may stand, its parameters, what its data lines hold.
 module card_rules
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use places, only: place_type, source_type, fail_at
    use words, only: word_length, squeezed, find_word, advice
    use cards, only: card_type, parameter_type, has_parameter
@@ -12,7 +13,7 @@ module card_rules
    integer, parameter :: rule_length = 200
 
    !> keyword ; level ; parameters ; data line, "-" where there is none, "text" where anything goes.
-   !! Levels: model, step, both, any; note: accepted without effect; ~: does not work yet.
+   !! Levels: model, step, both, any; note: accepted without effect.
    !! Parameters: NAME takes no value, NAME= takes one, NAME=! must be given, ~: not yet.
    character(len=rule_length), parameter :: rules(*) = [character(len=rule_length) :: &
          'HEADING;any;;text', &
@@ -67,7 +68,7 @@ module card_rules
          'CONTACT PRINT;step;FREQUENCY=;CF, CDIS', &
          'CONTACT FILE;step;FREQUENCY=;CF, CDIS', &
          'ENERGY PRINT;step;FREQUENCY=/LIMIT=;-', &
-         'RESTART;~;WRITE/FREQUENCY=;-', &
+         'RESTART;any;WRITE/FREQUENCY=/OVERLAY/READ/STEP=/INC=;-', &
          'PREPRINT;note;;text', &
          'PRINT;note;;text', &
          'OUTPUT;note;;text', &
@@ -147,10 +148,7 @@ contains
 
       level = trim(part(card%rule, 2))
       name = name_of(card%rule)
-      if (level == '~') then
-         call fail_at(error, source, card%place, name//' is known but does not work yet', &
-               cure='remove the card')
-      else if (level == 'model' .and. card%step > 0) then
+      if (level == 'model' .and. card%step > 0) then
          call fail_at(error, source, card%place, name//' must not stand inside a step', &
                cure='move it before the first *STEP')
       else if (level == 'step' .and. card%step == 0) then
@@ -287,10 +285,11 @@ contains
       integer, intent(in) :: rule
       character(len=word_length), allocatable :: list(:)
       character(len=word_length) :: word
-      integer :: k, n
+      integer :: k, n, status
 
       n = parameter_count(rule)
-      allocate (list(n))
+      allocate (list(n), stat=status)
+      call check_allocation(status)
       do k = 1, n
          word = parameter_word(rule, k)
          if (word(1:1) == '~') word = word(2:)

@@ -1,6 +1,7 @@
 !> The deck's files cut into keyword cards and data lines; *INCLUDE is followed here.
 module card_splitter
    use errors, only: error_type, new_error, status_file, status_deck
+   use memory_shortage, only: check_allocation
    use places, only: place_type, source_type, source_file_type, source_line, fail_at
    use words, only: is_blank
    use cards, only: card_type, deck_type, parameter_index
@@ -35,8 +36,10 @@ contains
       character(len=*), intent(in) :: path
       type(error_type), allocatable, intent(out) :: error   !! status_file: the deck is not there
       type(progress_type) :: progress
+      integer :: status
 
-      allocate (deck%cards(64), deck%data(1024))
+      allocate (deck%cards(64), deck%data(1024), stat=status)
+      call check_allocation(status)
       call add_file(source, path, place_type(), error)
       if (allocated(error)) return
       call split_file(deck, source, 1, progress, error)
@@ -59,10 +62,12 @@ contains
    pure subroutine find_ranges(deck, n_steps)
       type(deck_type), intent(inout) :: deck
       integer, intent(in) :: n_steps
-      integer :: i, s
+      integer :: i, s, status
 
-      allocate (deck%first_card(0:n_steps), source=deck%n_cards + 1)
-      allocate (deck%last_card(0:n_steps), source=0)
+      allocate (deck%first_card(0:n_steps), source=deck%n_cards + 1, stat=status)
+      call check_allocation(status)
+      allocate (deck%last_card(0:n_steps), source=0, stat=status)
+      call check_allocation(status)
       do i = 1, deck%n_cards
          s = deck%cards(i)%step
          deck%first_card(s) = min(i, deck%first_card(s))
@@ -143,6 +148,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(place_type), allocatable :: longer(:)
       type(place_type) :: place
+      integer :: status
 
       place%file = file
       place%line = line
@@ -154,7 +160,8 @@ contains
       associate (card => deck%cards(deck%n_cards))
          if (card%place%file == file) place%card = card%place%line
          if (deck%n_data == size(deck%data)) then
-            allocate (longer(2*deck%n_data))
+            allocate (longer(2*deck%n_data), stat=status)
+            call check_allocation(status)
             longer(:deck%n_data) = deck%data
             call move_alloc(longer, deck%data)
          end if
@@ -174,8 +181,10 @@ contains
       type(card_type) :: card
       type(place_type) :: place
       logical :: continued
+      integer :: status
 
-      allocate (card%parameters(0))
+      allocate (card%parameters(0), stat=status)
+      call check_allocation(status)
       card%keyword = ''
       card%first = deck%n_data + 1
       card%last = deck%n_data
@@ -206,10 +215,11 @@ contains
       type(deck_type), intent(inout) :: deck
       type(card_type), intent(inout) :: card     !! empty afterwards
       type(card_type), allocatable :: longer(:)
-      integer :: i
+      integer :: i, status
 
       if (deck%n_cards == size(deck%cards)) then
-         allocate (longer(2*deck%n_cards))
+         allocate (longer(2*deck%n_cards), stat=status)
+         call check_allocation(status)
          do i = 1, deck%n_cards
             call move_card(deck%cards(i), longer(i))
          end do
@@ -305,7 +315,7 @@ contains
       end if
       call add_file(source, path, card%parameters(1)%place, error)
       if (allocated(error)) then
-         trouble = error%message
+         trouble = error%message(:index(error%message//new_line('a'), new_line('a')) - 1)
          if (error%status == status_file) call fail_at(error, source, card%parameters(1)%place, &
                trouble, cure='the path is relative to the file that includes')
          return

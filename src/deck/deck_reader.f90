@@ -2,6 +2,7 @@
 module deck_reader
    use display, only: displayed
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use places, only: fail_at, note_at, source_line
    use model, only: model_type
    use histories, only: boundary_type, nodal_value_type
@@ -38,8 +39,10 @@ contains
       type(definition_type), intent(in) :: definitions(:)   !! override *PARAMETER of the same name
       type(error_type), allocatable, intent(out) :: error   !! its status tells which kind
       type(deck_type) :: deck
+      integer :: status
 
-      allocate (model%notes(0))
+      allocate (model%notes(0), stat=status)
+      call check_allocation(status)
       call split_deck(deck, model%source, path, error)
       if (allocated(error)) return
       call read_symbols(deck, model%source, error)

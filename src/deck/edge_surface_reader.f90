@@ -15,6 +15,7 @@ module edge_surface_reader
    use element_types, only: kind_name
    use words, only: word_length, find_word, advice
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -54,11 +55,12 @@ contains
       type(model_type), intent(inout) :: model
       integer, intent(in) :: n, keys(:)
       integer, allocatable :: nodes(:)
-      integer :: i
+      integer :: i, status
 
       associate (surface => model%surfaces(n))
          surface%edge_element = key_element(keys)
-         allocate (surface%edges(3, size(keys)))
+         allocate (surface%edges(3, size(keys)), stat=status)
+         call check_allocation(status)
          do i = 1, size(keys)
             surface%edges(:, i) = side_nodes(model%elements, key_element(keys(i)), &
                   key_side(keys(i)))

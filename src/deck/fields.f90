@@ -10,6 +10,7 @@ module fields
    use symbols, only: substitute, add_text
    use card_rules, only: usage_of
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -69,13 +70,16 @@ contains
       type(fields_type), intent(inout) :: fields
       integer, intent(in) :: start, finish
       integer, allocatable :: room(:, :)
-      integer :: first, last, n
+      integer :: first, last, n, status
 
       n = fields%n + 1
-      if (.not. allocated(fields%first)) allocate (fields%first(8), fields%last(8), &
-            fields%column(8), fields%width(8))
+      if (.not. allocated(fields%first)) then
+         allocate (fields%first(8), fields%last(8), fields%column(8), fields%width(8), stat=status)
+         call check_allocation(status)
+      end if
       if (n > size(fields%first)) then
-         allocate (room(n, 4), source=0)
+         allocate (room(n, 4), source=0, stat=status)
+         call check_allocation(status)
          fields%first = [fields%first, room(:, 1)]
          fields%last = [fields%last, room(:, 2)]
          fields%column = [fields%column, room(:, 3)]

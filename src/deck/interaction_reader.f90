@@ -2,6 +2,7 @@
 module interaction_reader
    use kinds, only: wp
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use places, only: source_type, fail_at, note_at
    use surfaces, only: interaction_type, method_transformation, method_fictitious_force
    use surfaces, only: method_penalty, method_lagrange, beta_given
@@ -33,9 +34,10 @@ contains
       type(model_type), intent(inout) :: model
       type(deck_type), intent(in) :: deck
       type(error_type), allocatable, intent(out) :: error
-      integer :: i, n, with_friction
+      integer :: i, n, with_friction, status
 
-      allocate (model%interactions(count_cards(deck, 'SURFACEINTERACTION')))
+      allocate (model%interactions(count_cards(deck, 'SURFACEINTERACTION')), stat=status)
+      call check_allocation(status)
       n = 0
       with_friction = 0
       do i = 1, deck%n_cards
@@ -283,9 +285,10 @@ contains
       type(model_type), intent(inout) :: model
       type(error_type), allocatable, intent(out) :: error
       logical, allocatable :: used(:)
-      integer :: i, first
+      integer :: i, first, status
 
-      allocate (used(size(model%interactions)), source=.false.)
+      allocate (used(size(model%interactions)), source=.false., stat=status)
+      call check_allocation(status)
       do i = 1, size(model%pairs)
          used(model%pairs(i)%interaction) = .true.
       end do

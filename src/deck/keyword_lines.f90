@@ -1,5 +1,6 @@
 !> Keyword lines cut into the keyword and its parameters.
 module keyword_lines
+   use memory_shortage, only: check_allocation
    use places, only: place_type
    use words, only: squeezed, is_blank
    use cards, only: card_type, parameter_type
@@ -64,11 +65,12 @@ contains
       type(place_type), intent(in) :: place
       integer, intent(in) :: column
       type(parameter_type), allocatable :: longer(:)
-      integer :: i, n, equals, first, last
+      integer :: i, n, equals, first, last, status
 
       n = size(card%parameters)
       if (n > max_parameters) return             ! an error already
-      allocate (longer(n + 1))
+      allocate (longer(n + 1), stat=status)
+      call check_allocation(status)
       do i = 1, n
          longer(i) = card%parameters(i)
       end do

@@ -2,6 +2,7 @@
 module material_reader
    use kinds, only: wp
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use places, only: source_type, fail_at
    use properties, only: material_type, table_type
    use model, only: model_type
@@ -22,9 +23,10 @@ contains
       type(model_type), intent(inout) :: model
       type(deck_type), intent(in) :: deck
       type(error_type), allocatable, intent(out) :: error
-      integer :: i, n
+      integer :: i, n, status
 
-      allocate (model%materials(count_cards(deck, 'MATERIAL')))
+      allocate (model%materials(count_cards(deck, 'MATERIAL')), stat=status)
+      call check_allocation(status)
       n = 0
       do i = 1, deck%n_cards
          select case (deck%cards(i)%keyword)
@@ -144,7 +146,7 @@ contains
             'ISOTROPIC', 'KINEMATIC', '~COMBINED']
       type(fields_type) :: fields
       real(wp) :: values(2)
-      integer :: choice, line, n
+      integer :: choice, line, n, status
 
       if (material%has_plastic) then
          call fail_at(error, source, card%place, 'this material has *PLASTIC already', &
@@ -157,7 +159,8 @@ contains
       material%kinematic = choice == 2
       n = card%last - card%first + 1
       material%hardening%n = n
-      allocate (material%hardening%x(n), material%hardening%y(n))
+      allocate (material%hardening%x(n), material%hardening%y(n), stat=status)
+      call check_allocation(status)
       do line = card%first, card%last
          call split_line(fields, deck, card, line, source, error)
          if (allocated(error)) return

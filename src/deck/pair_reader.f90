@@ -2,6 +2,7 @@
 module pair_reader
    use kinds, only: wp
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use places, only: source_type, fail_at, line_text
    use properties, only: name_length
    use surfaces, only: contact_pair_type
@@ -25,7 +26,7 @@ contains
       type(deck_type), intent(in) :: deck
       type(error_type), allocatable, intent(out) :: error
       type(name_map_type) :: pair_of
-      integer :: i, n
+      integer :: i, n, status
 
       n = 0
       do i = 1, deck%n_cards
@@ -33,7 +34,8 @@ contains
             n = n + deck%cards(i)%last - deck%cards(i)%first + 1
          end if
       end do
-      allocate (model%pairs(n))
+      allocate (model%pairs(n), stat=status)
+      call check_allocation(status)
       n = 0
       do i = 1, deck%n_cards
          if (deck%cards(i)%keyword /= 'CONTACTPAIR') cycle
@@ -293,10 +295,11 @@ contains
       type(model_type), intent(in) :: model
       type(error_type), allocatable, intent(out) :: error
       logical, allocatable :: massless(:)
-      integer :: p
+      integer :: p, status
 
       if (.not. any(model%pairs%redistributed)) return
-      allocate (massless(model%nodes%n), source=.false.)
+      allocate (massless(model%nodes%n), source=.false., stat=status)
+      call check_allocation(status)
       do p = 1, size(model%pairs)
          if (.not. model%pairs(p)%redistributed) cycle
          massless(model%surfaces(model%pairs(p)%contactor)%nodes) = .true.

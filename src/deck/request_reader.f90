@@ -2,6 +2,7 @@
 module request_reader
    use kinds, only: wp
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use places, only: source_type, fail_at, note_at
    use properties, only: name_length
    use steps, only: request_type, n_quantities, procedure_frequency
@@ -47,7 +48,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(request_type), allocatable :: requests(:)
       type(request_type) :: request
-      integer :: i, n, n_old, before
+      integer :: i, n, n_old, before, status
 
       n_old = 0
       before = step_before(model, step)
@@ -56,7 +57,8 @@ contains
       do i = deck%first_card(step), deck%last_card(step)
          if (deck%cards(i)%step == step .and. kind_of(deck%cards(i)%keyword) > 0) n = n + 1
       end do
-      allocate (requests(n + n_old))
+      allocate (requests(n + n_old), stat=status)
+      call check_allocation(status)
       n = 0
       do i = deck%first_card(step), deck%last_card(step)
          if (deck%cards(i)%step /= step .or. kind_of(deck%cards(i)%keyword) == 0) cycle

@@ -19,6 +19,7 @@ module section_reader
    use source_reader, only: add_note
    use words, only: advice
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -32,9 +33,10 @@ contains
       type(deck_type), intent(in) :: deck
       type(error_type), allocatable, intent(out) :: error
       type(section_type) :: section
-      integer :: i, n
+      integer :: i, n, status
 
-      allocate (model%sections(count_sections(deck)))
+      allocate (model%sections(count_sections(deck)), stat=status)
+      call check_allocation(status)
       n = 0
       do i = 1, deck%n_cards
          if (section_kind(deck%cards(i)%keyword) == 0) cycle

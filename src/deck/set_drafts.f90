@@ -1,5 +1,6 @@
 !> Sets while they are read: they may name each other in any order, and are put together at the end.
 module set_drafts
+   use memory_shortage, only: check_allocation
    use errors, only: error_type
    use places, only: place_type, source_type, fail_at
    use mesh, only: set_type
@@ -43,9 +44,10 @@ contains
       type(source_type), intent(in) :: source
       type(error_type), allocatable, intent(out) :: error
       integer, allocatable :: way(:), next(:)
-      integer :: i, depth, set, part
+      integer :: i, depth, set, part, status
 
-      allocate (way(family%n), next(family%n), source=0)
+      allocate (way(family%n), next(family%n), source=0, stat=status)
+      call check_allocation(status)
       do i = 1, family%n
          if (family%drafts(i)%state == set_done) cycle
          depth = 1
@@ -93,7 +95,7 @@ contains
       type(source_type), intent(in) :: source
       type(error_type), allocatable, intent(out) :: error
       integer, allocatable :: parts(:), members(:)
-      integer :: k, n
+      integer :: k, n, status
 
       associate (draft => family%drafts(set))
          parts = draft%parts(:draft%n_parts)
@@ -102,7 +104,8 @@ contains
          do k = 1, size(parts)
             n = n + size(family%sets(parts(k))%members)
          end do
-         allocate (members(n))
+         allocate (members(n), stat=status)
+         call check_allocation(status)
          n = draft%n_members
          members(:n) = draft%members(:n)
          deallocate (draft%members)

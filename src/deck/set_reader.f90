@@ -15,6 +15,7 @@ module set_reader
    use plain_lines, only: scan_integers
    use words, only: advice
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -48,7 +49,7 @@ contains
       type(source_type), intent(in) :: source
       type(error_type), allocatable, intent(out) :: error
       type(drafts_type) :: family
-      integer :: i, set
+      integer :: i, set, status
 
       family%what = what
       call name_sets(family, keywords, parameter_name, deck, source, error)
@@ -64,7 +65,8 @@ contains
       call resolve_sets(family, source, error)
       if (allocated(error)) return
       set_of = family%set_of
-      allocate (sets(family%n))
+      allocate (sets(family%n), stat=status)
+      call check_allocation(status)
       do i = 1, family%n
          sets(i)%name = family%sets(i)%name
          sets(i)%place = family%sets(i)%place
@@ -79,13 +81,14 @@ contains
       type(deck_type), intent(in) :: deck
       type(source_type), intent(in) :: source
       type(error_type), allocatable, intent(out) :: error
-      integer :: i, n, set
+      integer :: i, n, set, status
 
       n = 0
       do i = 1, deck%n_cards
          if (any(deck%cards(i)%keyword == keywords)) n = n + 1
       end do
-      allocate (family%sets(n), family%drafts(n))
+      allocate (family%sets(n), family%drafts(n), stat=status)
+      call check_allocation(status)
       do i = 1, deck%n_cards
          if (all(deck%cards(i)%keyword /= keywords)) cycle
          if (.not. has_parameter(deck%cards(i), parameter_name)) cycle
@@ -103,6 +106,7 @@ contains
       type(source_type), intent(in) :: source
       type(error_type), allocatable, intent(out) :: error
       character(len=name_length) :: name
+      integer :: status
 
       set = 0
       call get_name_parameter(card, parameter_name, name, source, error)
@@ -114,8 +118,10 @@ contains
       call family%set_of%insert(name, set)
       family%sets(set)%name = name
       family%sets(set)%place = card%place
-      allocate (family%drafts(set)%members(8), family%drafts(set)%parts(0))
-      allocate (family%drafts(set)%part_places(0))
+      allocate (family%drafts(set)%members(8), family%drafts(set)%parts(0), stat=status)
+      call check_allocation(status)
+      allocate (family%drafts(set)%part_places(0), stat=status)
+      call check_allocation(status)
    end subroutine open_set
 
    !> Adds what the data lines of a card say to a set.

@@ -4,6 +4,8 @@ module source_reader
    use display, only: abridged
    use text, only: to_text
    use errors, only: error_type, new_error, status_file, status_deck
+   use memory_shortage, only: check_allocation
+   use file_calls, only: file_facts_type, look_at, is_regular
    use places, only: source_type, source_file_type, source_line_type, place_type, fail_at
    use places, only: new_source_file
    implicit none
@@ -18,8 +20,8 @@ module source_reader
 
 contains
 
-   !> Reads a file and appends it to the source; a byte that is no text is an error. What says to be
-   !> empty is not opened: a pipe would wait for its other end, and a device never ends.
+   !> Reads a file and appends it to the source, which may know its text already; a byte that is no
+   !> text is an error. Pipes and devices are not opened: they could wait for ever, or never end.
    subroutine add_file(source, path, included, error)
       type(source_type), intent(inout) :: source
       character(len=*), intent(in) :: path
@@ -28,6 +30,13 @@ contains
       character(len=:), allocatable :: content
       integer(int64) :: length
 
+      if (source%n_files < source%n_stored) then
+         source%n_files = source%n_files + 1
+         source%files(source%n_files)%included = included
+         return
+      end if
+      call check_kind(path, error)
+      if (allocated(error)) return
       inquire (file=path, size=length)
       if (length == 0) then
          call refuse_empty(path, included%line == 0, error)
@@ -41,6 +50,18 @@ contains
       source%files(source%n_files)%included = included
       call check_bytes(source, source%n_files, error)
    end subroutine add_file
+
+   subroutine check_kind(path, error)
+      character(len=*), intent(in) :: path
+      type(error_type), allocatable, intent(out) :: error
+      type(file_facts_type) :: facts
+
+      facts = look_at(path)
+      if (.not. facts%exists .or. is_regular(facts)) return
+      call new_error(error, status_file, 'cannot read '''//abridged(path, longest_path) &
+            //''': it is a directory, pipe or device'//new_line('a') &
+            //'  cure: save the deck in a file')
+   end subroutine check_kind
 
    subroutine refuse_empty(path, is_deck, error)
       character(len=*), intent(in) :: path
@@ -112,7 +133,8 @@ contains
          inquire (unit=unit, size=length)
       else
          call new_error(error, status_file, "cannot open '"//abridged(path, longest_path)//"':"// &
-               trim(reason(index(reason, ': ', back=.true.) + 1:)))
+               trim(reason(index(reason, ': ', back=.true.) + 1:))//new_line('a')// &
+               '  cure: check the name, and that the file may be read')
       end if
    end subroutine open_file
 
@@ -180,11 +202,15 @@ contains
    pure subroutine make_room(source)
       type(source_type), intent(inout) :: source
       type(source_file_type), allocatable :: files(:)
-      integer :: i
+      integer :: i, status
 
-      if (.not. allocated(source%files)) allocate (source%files(4))
+      if (.not. allocated(source%files)) then
+         allocate (source%files(4), stat=status)
+         call check_allocation(status)
+      end if
       if (source%n_files < size(source%files)) return
-      allocate (files(2*size(source%files)))
+      allocate (files(2*size(source%files)), stat=status)
+      call check_allocation(status)
       do i = 1, source%n_files
          call move_alloc(source%files(i)%name, files(i)%name)
          call move_alloc(source%files(i)%content, files(i)%content)
@@ -201,12 +227,13 @@ contains
       type(source_line_type), allocatable, intent(inout) :: notes(:)
       character(len=*), intent(in) :: remark
       type(source_line_type), allocatable :: longer(:)
-      integer :: i, n
+      integer :: i, n, status
 
       n = 0
       if (allocated(notes)) n = size(notes)
       if (n > most_notes) return
-      allocate (longer(n + 1))
+      allocate (longer(n + 1), stat=status)
+      call check_allocation(status)
       do i = 1, n
          call move_alloc(notes(i)%text, longer(i)%text)
       end do

@@ -9,6 +9,7 @@ module spring_reader
    use fields, only: fields_type, split_line, check_count, field_place, is_given
    use fields, only: get_integer, get_reals
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -25,9 +26,10 @@ contains
       type(source_type), intent(in) :: source
       type(error_type), allocatable, intent(out) :: error
       logical, allocatable :: axial(:)
-      integer :: line
+      integer :: line, status
 
-      allocate (axial(size(kinds)))
+      allocate (axial(size(kinds)), stat=status)
+      call check_allocation(status)
       axial = kinds == element_springa .or. kinds == element_dashpota
       if (any(axial) .and. .not. all(axial)) then
          call fail_at(error, source, parameter_place(card, 'ELSET'), &
@@ -147,7 +149,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(fields_type) :: fields
       real(wp) :: values(2)
-      integer :: line, n
+      integer :: line, n, status
 
       n = card%last - first + 1
       if (n < 2) then
@@ -156,7 +158,8 @@ contains
                cure='write lines of force, elongation')
          return
       end if
-      allocate (section%force%x(n), section%force%y(n))
+      allocate (section%force%x(n), section%force%y(n), stat=status)
+      call check_allocation(status)
       section%force%n = n
       do line = first, card%last
          n = line - first + 1

@@ -2,6 +2,7 @@
 module step_reader
    use kinds, only: wp
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use places, only: source_type, fail_at
    use steps, only: step_type, procedure_static, procedure_dynamic, procedure_frequency, &
          solver_mumps
@@ -12,6 +13,7 @@ module step_reader
    use condition_reader, only: read_boundaries, read_initial_conditions, read_loads
    use request_reader, only: read_requests
    use load_reader, only: read_distributed, read_base_motions
+   use restart_reader, only: read_restarts
    use order_reader, only: check_one_order
    use dynamic_reader, only: read_dynamic
    use words, only: word_length, find_word
@@ -26,14 +28,16 @@ contains
       type(model_type), intent(inout) :: model
       type(deck_type), intent(in) :: deck
       type(error_type), allocatable, intent(out) :: error
-      integer :: s, n
+      integer :: s, n, status
 
       n = ubound(deck%first_card, 1)
-      allocate (model%steps(n))
+      allocate (model%steps(n), stat=status)
+      call check_allocation(status)
       do s = 1, n
          call read_step(model, s, deck, error)
          if (allocated(error)) return
       end do
+      call read_restarts(model, deck, error)
    end subroutine read_steps
 
    subroutine read_step(model, s, deck, error)

@@ -1,6 +1,7 @@
 !> `*SURFACE` and `*RIGID SURFACE`: what may touch.
 module surface_reader
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use places, only: fail_at
    use properties, only: name_length
    use element_sides, only: side_finder_type
@@ -27,10 +28,12 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(side_finder_type) :: finder
       character(len=name_length) :: name
-      integer :: i, n, n_rigid
+      integer :: i, n, n_rigid, status
 
-      allocate (model%surfaces(count_cards(deck, 'SURFACE')))
-      allocate (model%rigid_surfaces(count_cards(deck, 'RIGIDSURFACE')))
+      allocate (model%surfaces(count_cards(deck, 'SURFACE')), stat=status)
+      call check_allocation(status)
+      allocate (model%rigid_surfaces(count_cards(deck, 'RIGIDSURFACE')), stat=status)
+      call check_allocation(status)
       n = 0
       n_rigid = 0
       do i = 1, deck%n_cards
@@ -102,7 +105,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(fields_type) :: fields
       integer, allocatable :: nodes(:), more(:)
-      integer :: line, k, i, n_nodes
+      integer :: line, k, i, n_nodes, status
 
       n_nodes = 0
       do line = card%first, card%last
@@ -119,7 +122,8 @@ contains
       call fit(nodes, n_nodes)
       call sort_unique(nodes)
       call move_alloc(nodes, model%surfaces(n)%nodes)
-      allocate (model%surfaces(n)%edges(3, 0), model%surfaces(n)%edge_element(0))
+      allocate (model%surfaces(n)%edges(3, 0), model%surfaces(n)%edge_element(0), stat=status)
+      call check_allocation(status)
    end subroutine read_surface_nodes
 
 end module surface_reader

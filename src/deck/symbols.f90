@@ -2,6 +2,7 @@
 module symbols
    use kinds, only: wp
    use errors, only: error_type, new_error, status_usage
+   use memory_shortage, only: check_allocation
    use places, only: place_type, source_type, source_line, fail_at
    use properties, only: name_length
    use words, only: squeezed, advice, is_blank
@@ -28,7 +29,7 @@ contains
       type(deck_type), intent(inout) :: deck
       type(source_type), intent(in) :: source
       type(error_type), allocatable, intent(out) :: error
-      integer :: i, j, n
+      integer :: i, j, n, status
 
       n = 0
       do i = 1, deck%n_cards
@@ -36,7 +37,8 @@ contains
             n = n + deck%cards(i)%last - deck%cards(i)%first + 1
          end if
       end do
-      allocate (deck%symbols(n))
+      allocate (deck%symbols(n), stat=status)
+      call check_allocation(status)
       n = 0
       do i = 1, deck%n_cards
          if (deck%cards(i)%keyword /= 'PARAMETER') cycle

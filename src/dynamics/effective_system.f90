@@ -4,6 +4,7 @@ module effective_system
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
    use kinds, only: wp, int64
    use errors, only: error_type, new_error, status_numerical
+   use state_archive, only: archive_type
    use clock, only: seconds_now
    use steps, only: solver_mumps
    use skyline_matrix, only: skyline_type, profile_type, profile_entries, new_profile, &
@@ -66,6 +67,8 @@ module effective_system
       procedure :: forget
       procedure :: release
       procedure :: current_factors
+      procedure :: kept_factors
+      procedure :: pass_counts
    end type effective_system_type
 
 contains
@@ -97,6 +100,35 @@ contains
 
       factors = self%slots(self%current)%factors
    end function current_factors
+
+   !> c_m, c_c, c_k of all matrices in the store, the one used last at the end.
+   pure subroutine kept_factors(self, factors)
+      class(effective_system_type), intent(in) :: self
+      real(wp), allocatable, intent(out) :: factors(:, :)   !! (3, n)
+      logical :: left(n_slots)
+      integer :: i, j
+
+      left = self%slots%last_use >= 0
+      do i = 1, n_slots
+         left(i) = left(i) .and. all(self%slots(i)%factors >= 0.0_wp)
+      end do
+      allocate (factors(3, count(left)))
+      do i = 1, size(factors, 2)
+         j = minloc(self%slots%last_use, dim=1, mask=left)
+         factors(:, i) = self%slots(j)%factors
+         left(j) = .false.
+      end do
+   end subroutine kept_factors
+
+   !> What has been done so far.
+   subroutine pass_counts(self, archive)
+      class(effective_system_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call archive%pass('n_factorizations', self%n_factorizations)
+      call archive%pass('n_solves', self%n_solves)
+      call archive%pass('n_assembled', self%n_assembled)
+   end subroutine pass_counts
 
    !> Begins a step: drops every matrix and chooses the solver for the work to come. The analysis
    !> of a sparse matrix stays where the pattern is that of the step before.

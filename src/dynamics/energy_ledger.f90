@@ -9,6 +9,7 @@ module energy_ledger
          group_kinetic_energy
    use external_load, only: load_at
    use motion_state, only: state_type
+   use state_archive, only: archive_type
    use cost_account, only: enter, leave, phase_elements
    use equation_of_motion, only: system_type
    use reactions, only: resisting_reactions, impulse_reactions
@@ -39,9 +40,33 @@ module energy_ledger
       real(wp) :: found(3) = 0.0_wp
       logical :: has_found = .false.
       real(wp) :: time = 0.0_wp                 !! of the energies
+   contains
+      procedure :: pass_state
    end type ledger_type
 
 contains
+
+   !> All of it.
+   subroutine pass_state(self, archive)
+      class(ledger_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call archive%pass('kinetic', self%kinetic)
+      call archive%pass('strain', self%strain)
+      call archive%pass('damping', self%damping)
+      call archive%pass('plastic', self%plastic)
+      call archive%pass('friction', self%friction)
+      call archive%pass('impact_loss', self%impact_loss)
+      call archive%pass('external_work', self%external_work)
+      call archive%pass('total', self%total)
+      call archive%pass('balance_error', self%balance_error)
+      call archive%pass('initial', self%initial)
+      call archive%pass('scale', self%scale)
+      call archive%pass('has_found', self%has_found)
+      call archive%pass('time', self%time)
+      call archive%pass_fixed('stored', self%stored)
+      call archive%pass_fixed('found', self%found)
+   end subroutine pass_state
 
    !> Starts the account at the first state.
    subroutine open_ledger(self, system, state)

@@ -5,6 +5,7 @@ module equation_of_motion
    use cost_account, only: cost_type, enter, leave, charge, phase_elements, phase_solve, &
          phase_factor
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use mesh, only: scheme_implicit, scheme_explicit
    use skyline_matrix, only: profile_type, new_profile
    use dof_map, only: reduce, expand, follow_constraints
@@ -23,6 +24,7 @@ module equation_of_motion
    public :: prepare_mass, solve_mass, solve_together, force_balance, impose
    public :: settle_massless
    public :: rigid_mass, count_updates, resist, mark_type, begin_matrix, end_matrix
+   public :: prepare_again
 
    !> A structure under the loads and conditions of a step, with its matrices.
    type :: system_type
@@ -237,6 +239,20 @@ contains
       call prepare(self, self%profile, d, history, factors, error)
    end subroutine prepare_motion
 
+   !> Makes a matrix ready that has been there before: M or one of `prepare_motion`.
+   subroutine prepare_again(self, factors, state, error)
+      type(system_type), intent(inout) :: self
+      real(wp), intent(in) :: factors(3)         !! c_m, c_c, c_k
+      type(state_type), intent(in) :: state      !! any, the matrix does not depend on it
+      type(error_type), allocatable, intent(out) :: error
+
+      if (any(factors(2:3) > 0.0_wp)) then
+         call prepare(self, self%profile, state%d, state%history, factors, error)
+      else
+         call prepare_mass(self, error)
+      end if
+   end subroutine prepare_again
+
    !> Makes a matrix ready; books what that takes.
    subroutine prepare(self, profile, d, history, factors, error)
       type(system_type), intent(inout) :: self
@@ -328,9 +344,10 @@ contains
       logical, intent(in) :: on_mass
       real(wp), intent(inout) :: forces(:, :)    !! (n_freedoms, n), then the motions
       real(wp), allocatable :: b(:, :)
-      integer :: j, outer
+      integer :: j, outer, status
 
-      allocate (b(self%structure%map%n_eq, size(forces, 2)))
+      allocate (b(self%structure%map%n_eq, size(forces, 2)), stat=status)
+      call check_allocation(status)
       do j = 1, size(b, 2)
          b(:, j) = reduce(self%structure%map, forces(:, j))
          if (on_mass) where (self%massless) b(:, j) = 0.0_wp

@@ -3,18 +3,20 @@
 !> such a system does not need, each vector touched as seldom as can be.
 module explicit_motion
    use kinds, only: wp
+   use state_archive, only: archive_type
    use mesh, only: scheme_implicit, scheme_explicit
    use structure, only: elastic_force, damping_force, count_resisting
    use external_load, only: load_at
    use prescribed_motion, only: are_at_rest
    use motion_state, only: state_type, exchange
    use cost_account, only: enter, leave, phase_elements
+   use memory_shortage, only: check_allocation
    use equation_of_motion, only: system_type, count_updates
    use energy_ledger, only: ledger_type, record_found
    implicit none
    private
 
-   public :: explicit_motion_type, new_explicit_motion, advance_explicitly
+   public :: explicit_motion_type, new_explicit_motion, advance_explicitly, go_on_explicitly
 
    !> Freedoms whose energies are added up at once: sums do not depend on the number of threads.
    integer, parameter :: run_length = 4096
@@ -32,16 +34,29 @@ module explicit_motion
       real(wp), allocatable :: load(:)           !! (n_freedoms) at the start of an increment
       real(wp), allocatable :: change(:)         !! (n_freedoms) of d in an increment, if damped
       real(wp), allocatable :: history(:)        !! (n_history) work space
+   contains
+      procedure :: pass_state
    end type explicit_motion_type
 
 contains
+
+   !> What is not found again from the system; `go_on_explicitly` finds the rest.
+   subroutine pass_state(self, archive)
+      class(explicit_motion_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call archive%pass('ready', self%ready)
+      call archive%pass('usable', self%usable)
+      call archive%pass('damped', self%damped)
+      call archive%pass('load', self%load)
+   end subroutine pass_state
 
    !> Looks at the system at the start of a step or later in it.
    subroutine new_explicit_motion(self, system, state)
       type(explicit_motion_type), intent(out) :: self
       type(system_type), intent(in) :: system
       type(state_type), intent(in) :: state
-      integer :: g
+      integer :: g, status
 
       self%ready = .true.
       self%usable = is_explicit(system)
@@ -50,19 +65,33 @@ contains
       do g = 1, size(system%structure%groups)
          self%damped = self%damped .or. size(system%structure%groups(g)%damping) > 0
       end do
+      allocate (self%load(merge(size(state%d), 0, size(system%loads%loads) > 0)), stat=status)
+      call check_allocation(status)
+      if (size(self%load) > 0) self%load = load_at(system%loads, size(self%load), state%t)
+      call go_on_explicitly(self, system, state)
+   end subroutine new_explicit_motion
+
+   !> All but the loads at the start of the increment to come, which are known.
+   subroutine go_on_explicitly(self, system, state)
+      type(explicit_motion_type), intent(inout) :: self
+      type(system_type), intent(in) :: system
+      type(state_type), intent(in) :: state
+      integer :: status
+
+      if (.not. self%usable) return
       associate (mass => system%structure%lumped_mass)
-         allocate (self%inverse(size(mass)), self%force(size(mass)))
+         allocate (self%inverse(size(mass)), self%force(size(mass)), stat=status)
+         call check_allocation(status)
          where (system%structure%map%prescribed .or. .not. mass > 0.0_wp)
             self%inverse = 0.0_wp
          else where
             self%inverse = 1.0_wp/mass
          end where
-         allocate (self%load(merge(size(mass), 0, size(system%loads%loads) > 0)))
-         allocate (self%change(merge(size(mass), 0, self%damped)))
+         allocate (self%change(merge(size(mass), 0, self%damped)), stat=status)
+         call check_allocation(status)
       end associate
-      if (size(self%load) > 0) self%load = load_at(system%loads, size(self%load), state%t)
       self%history = state%history
-   end subroutine new_explicit_motion
+   end subroutine go_on_explicitly
 
    !> Whether nothing of the system is implicit, coupled or without mass.
    function is_explicit(system) result(explicit)

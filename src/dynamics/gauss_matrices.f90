@@ -4,6 +4,7 @@ module gauss_matrices
    use kinds, only: wp, int64
    use errors, only: error_type
    use clock, only: seconds_now
+   use memory_shortage, only: check_allocation
    use skyline_matrix, only: profile_type, skyline_type, profile_entries
    use complex_skyline, only: complex_skyline_type, new_complex_skyline, column_values
    use structure, only: structure_type
@@ -12,7 +13,7 @@ module gauss_matrices
    implicit none
    private
 
-   public :: gauss_matrices_type, prepare_gauss, solve_gauss
+   public :: gauss_matrices_type, prepare_gauss, solve_gauss, kept_gauss_steps, drop_gauss
 
    integer, parameter :: n_slots = 4
    real(wp), parameter :: unit(3, 3) = reshape(real([1, 0, 0, 0, 1, 0, 0, 0, 1], wp), [3, 3])
@@ -84,6 +85,32 @@ contains
       end associate
    end subroutine prepare_gauss
 
+   !> Steps whose factors are in the store, the one used last at the end.
+   pure subroutine kept_gauss_steps(self, matrices, dt, whole)
+      type(gauss_matrices_type), intent(in) :: self
+      type(effective_system_type), intent(in) :: matrices
+      real(wp), allocatable, intent(out) :: dt(:)
+      logical, allocatable, intent(out) :: whole(:)   !! it has the place of whole steps
+      logical :: left(n_slots)
+      integer :: i, j
+
+      left = self%slots%dt > 0.0_wp .and. self%generation == matrices%generation
+      allocate (dt(count(left)), whole(count(left)))
+      do i = 1, size(dt)
+         j = minloc(self%slots%last_use, dim=1, mask=left)
+         dt(i) = self%slots(j)%dt
+         whole(i) = j == 1
+         left(j) = .false.
+      end do
+   end subroutine kept_gauss_steps
+
+   !> Empties the store.
+   subroutine drop_gauss(self)
+      type(gauss_matrices_type), intent(out) :: self
+
+      self%current = 1
+   end subroutine drop_gauss
+
    !> The structure or its equations have changed.
    subroutine drop_all(self, generation)
       type(gauss_matrices_type), intent(out) :: self
@@ -98,11 +125,12 @@ contains
       type(profile_type), intent(in) :: profile
       type(skyline_type) :: matrix
       real(wp) :: d(structure%map%n_freedoms), history(structure%n_history)
-      integer :: i
+      integer :: i, status
 
       d = 0.0_wp
       history = 0.0_wp
-      allocate (self%parts(profile_entries(profile), 3))
+      allocate (self%parts(profile_entries(profile), 3), stat=status)
+      call check_allocation(status)
       do i = 1, 3
          call assemble_sum(structure, profile, d, history, unit(:, i), matrix)
          call column_values(matrix, profile, self%parts(:, i))

@@ -24,7 +24,7 @@ module gauss_step
    private
 
    public :: start_gauss, free_acceleration, solve_complex, end_gauss, stage_state, step_sum
-   public :: span_works, stage_value
+   public :: span_works, stage_value, prepare_step
 
    real(wp), parameter :: root = sqrt(3.0_wp)
    !> r: the eigenvalue of the inverse of Gauss' matrix, the other one is its conjugate.
@@ -105,13 +105,13 @@ contains
       do i = 1, 2
          force = force + joint(i)*load_at(system%loads, size(a), start%t + point(i)*dt)
       end do
-      call prepare(system, dt, whole, error)
+      call prepare_step(system, dt, whole, error)
       if (allocated(error)) return
       a = a + solve_complex(system, force)
    end subroutine free_acceleration
 
    !> Makes the matrix of a step ready; books what that takes.
-   subroutine prepare(system, dt, whole, error)
+   subroutine prepare_step(system, dt, whole, error)
       type(system_type), intent(inout) :: system
       real(wp), intent(in) :: dt
       logical, intent(in) :: whole
@@ -122,7 +122,7 @@ contains
       call prepare_gauss(system%gauss, system%matrices, system%structure, system%profile, rate/dt, &
             dt, whole, error)
       call end_matrix(system, mark)
-   end subroutine prepare
+   end subroutine prepare_step
 
    !> K d + C v + M a.
    function resistance(system, start, d, v, a) result(force)

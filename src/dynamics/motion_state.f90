@@ -1,6 +1,7 @@
 !> Displacement, velocity and acceleration at one time.
 module motion_state
    use kinds, only: wp
+   use state_archive, only: archive_type
    implicit none
    private
 
@@ -12,6 +13,8 @@ module motion_state
       real(wp) :: t = 0.0_wp
       real(wp), allocatable :: d(:), v(:), a(:)   !! (n_freedoms)
       real(wp), allocatable :: history(:)         !! (n_history) memory of the elements
+   contains
+      procedure :: pass_state
    end type state_type
 
    !> Parameters of the time integration: Newmark's and that of Hilber, Hughes and Taylor.
@@ -22,6 +25,18 @@ module motion_state
    end type newmark_type
 
 contains
+
+   !> All of it.
+   subroutine pass_state(self, archive)
+      class(state_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call archive%pass('t', self%t)
+      call archive%pass('d', self%d)
+      call archive%pass('v', self%v)
+      call archive%pass('a', self%a)
+      call archive%pass('history', self%history)
+   end subroutine pass_state
 
    !> d~ = d + h v + h^2/2 (1 - 2 beta) a,  v~ = v + h (1 - gamma) a  (Hughes and Liu);
    !> the acceleration starts at zero.

@@ -7,6 +7,7 @@ module compliance_store
    private
 
    public :: compliance_store_type, choose_shelf, missing_columns, keep_column, add_columns
+   public :: begin_batch, shelves_by_age, kept_columns
 
    integer, parameter :: n_shelves = 4
    !> Largest number of entries kept on one shelf.
@@ -19,6 +20,8 @@ module compliance_store
       integer(int64) :: last_use = -1
       integer :: n = 0                           !! columns kept
       integer, allocatable :: place(:)           !! (2 n_rows) of a column, 0: not kept
+      integer :: n_batches = 0                   !! of columns that have been found together
+      integer, allocatable :: batch(:)           !! (2 n_rows) of the columns kept, in their order
       real(wp), allocatable :: x(:, :)           !! (n_freedoms, n) motion by unit forces
       real(wp), allocatable :: w(:, :)           !! (2 n_rows, n) of all rows
    end type shelf_type
@@ -63,7 +66,9 @@ contains
          chosen%generation = generation
          chosen%factors = factors
          chosen%n = 0
+         chosen%n_batches = 0
          chosen%place = [(0, i=1, 2*n_rows)]
+         chosen%batch = chosen%place
       end associate
    end subroutine choose_shelf
 
@@ -85,6 +90,40 @@ contains
       missing = pack(columns, shelf%place(columns) == 0)
    end function missing_columns
 
+   !> Columns kept from now on are found together.
+   pure subroutine begin_batch(shelf)
+      type(shelf_type), intent(inout) :: shelf
+
+      shelf%n_batches = shelf%n_batches + 1
+   end subroutine begin_batch
+
+   !> The shelves of a generation of matrices, the one used last at the end.
+   pure function shelves_by_age(self, generation) result(shelves)
+      type(compliance_store_type), intent(in) :: self
+      integer(int64), intent(in) :: generation
+      integer, allocatable :: shelves(:)
+      logical :: left(n_shelves)
+      integer :: i
+
+      left = self%shelves%generation == generation
+      allocate (shelves(count(left)))
+      do i = 1, size(shelves)
+         shelves(i) = minloc(self%shelves%last_use, dim=1, mask=left)
+         left(shelves(i)) = .false.
+      end do
+   end function shelves_by_age
+
+   !> The columns on a shelf in the order in which they have been found.
+   pure function kept_columns(shelf) result(columns)
+      type(shelf_type), intent(in) :: shelf
+      integer :: columns(shelf%n)
+      integer :: i
+
+      do i = 1, size(shelf%place)
+         if (shelf%place(i) > 0) columns(shelf%place(i)) = i
+      end do
+   end function kept_columns
+
    !> Keeps a column and what it moves in all rows.
    pure subroutine keep_column(shelf, column, x, w)
       type(shelf_type), intent(inout) :: shelf
@@ -96,6 +135,7 @@ contains
       call make_room(shelf%x, size(x), shelf%n)
       call make_room(shelf%w, size(w), shelf%n)
       shelf%place(column) = shelf%n
+      shelf%batch(shelf%n) = shelf%n_batches
       shelf%x(:, shelf%n) = x
       shelf%w(:, shelf%n) = w
    end subroutine keep_column

@@ -2,6 +2,7 @@
 !> contact forces, and how an impact behaves in each row.
 module constraint_rows
    use kinds, only: wp
+   use state_archive, only: archive_type
    use histories, only: amplitude_type
    use amplitude_value, only: amplitude_at, amplitude_slope
    use motion_state, only: state_type
@@ -55,9 +56,36 @@ module constraint_rows
       real(wp), allocatable :: tangent(:, :)     !! (3, n) of its friction force
       real(wp), allocatable :: weight(:)         !! (n) length a force acts on, 0: not known
       logical :: moving = .false.                !! some rows are placed anew in every step
+   contains
+      procedure :: pass_state
    end type rows_type
 
 contains
+
+   !> What placing the rows anew changes; nothing where they do not move.
+   subroutine pass_state(self, archive)
+      class(rows_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      if (.not. self%moving) return
+      call archive%enter('along_normal')
+      call self%along_normal%pass_state(archive)
+      call archive%leave()
+      call archive%enter('along_tangent')
+      call self%along_tangent%pass_state(archive)
+      call archive%leave()
+      call archive%enter('turning')
+      call self%turning%pass_state(archive)
+      call archive%leave()
+      call archive%pass('offset', self%offset)
+      call archive%pass('bend', self%bend)
+      call archive%pass('facing', self%facing)
+      call archive%pass('motion', self%motion)
+      call archive%pass('sliding_motion', self%sliding_motion)
+      call archive%pass('normal', self%normal)
+      call archive%pass('tangent', self%tangent)
+      call archive%pass('weight', self%weight)
+   end subroutine pass_state
 
    !> Rows whose impacts are jumps of velocity, and that have a partner to hit: a node without mass
    !> has no velocity to jump.

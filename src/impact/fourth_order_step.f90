@@ -18,7 +18,7 @@ module fourth_order_step
    implicit none
    private
 
-   public :: smooth_step_type, step_smoothly, accept_step, stage_forces
+   public :: find_columns, smooth_step_type, step_smoothly, accept_step, stage_forces
 
    !> What is added to the diagonal where rows depend on each other, in parts of its mean; what is
    !> left of their motion must be below that part of it.

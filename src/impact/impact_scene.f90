@@ -2,6 +2,7 @@
 !> the record of events.
 module impact_scene
    use kinds, only: wp, int64
+   use state_archive, only: archive_type
    use surfaces, only: beta_automatic, method_transformation
    use motion_state, only: state_type, copy_state, exchange_states, exchange
    use equation_of_motion, only: system_type
@@ -56,6 +57,8 @@ module impact_scene
       logical :: fresh = .false.                 !! acceleration just restarted, no time since
       real(wp), allocatable :: jump(:)           !! (n_freedoms) of the velocity, no time since
       real(wp), allocatable :: left_out(:)       !! (n_freedoms) damping forces not in `a`
+   contains
+      procedure :: pass_state => pass_motion
    end type contact_motion_type
 
    !> One thing that happened in one row.
@@ -96,6 +99,8 @@ module impact_scene
       logical, allocatable :: held(:)            !! (n_rows) rows that touch to the end
       logical, allocatable :: hit(:)             !! (n_rows) rows that are hit then
       logical, allocatable :: release(:)         !! (n_rows) rows that let go then
+   contains
+      procedure :: pass_state => pass_anchor
    end type anchor_type
 
    !> Everything an impact method needs besides the motion.
@@ -120,6 +125,8 @@ module impact_scene
       real(wp) :: residuals(max_residuals) = 0.0_wp   !! after each, of the largest force
       integer(int64) :: n_iterations = 0         !! of Newton's method and of the fictitious force
       integer(int64) :: n_cycles = 0             !! of them that did not settle on a set of rows
+   contains
+      procedure :: pass_state => pass_scene
    end type scene_type
 
 contains
@@ -145,6 +152,71 @@ contains
       self%leaving = self%touching
       self%sticking = self%touching
    end subroutine new_contact_motion
+
+   !> All of it.
+   subroutine pass_motion(self, archive)
+      class(contact_motion_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call self%motion%pass_state(archive)
+      call archive%pass('lambda', self%lambda)
+      call archive%pass('tau', self%tau)
+      call archive%pass('force', self%force)
+      call archive%pass('carried', self%carried)
+      call archive%pass('touching', self%touching)
+      call archive%pass('sticking', self%sticking)
+      call archive%pass('slip', self%slip)
+      call archive%pass('entry_speed', self%entry_speed)
+      call archive%pass('leaving', self%leaving)
+      call archive%pass('fresh', self%fresh)
+      call archive%pass('jump', self%jump)
+      call archive%pass('left_out', self%left_out)
+   end subroutine pass_motion
+
+   !> All of it.
+   subroutine pass_anchor(self, archive)
+      class(anchor_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call archive%pass('running', self%running)
+      call archive%pass('dt', self%dt)
+      call archive%enter('from')
+      call self%from%pass_state(archive)
+      call archive%leave()
+      call archive%enter('to')
+      call self%to%pass_state(archive)
+      call archive%leave()
+      call archive%pass('held', self%held)
+      call archive%pass('hit', self%hit)
+      call archive%pass('release', self%release)
+   end subroutine pass_anchor
+
+   !> What is neither the deck's nor kept of solutions nor counted; without the conditions.
+   subroutine pass_scene(self, archive)
+      class(scene_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call archive%enter('ledger')
+      call self%ledger%pass_state(archive)
+      call archive%leave()
+      call archive%enter('rows')
+      call self%rows%pass_state(archive)
+      call archive%leave()
+      call archive%enter('search')
+      call self%geometry%pass_state(archive)
+      call archive%leave()
+      call archive%enter('explicit')
+      call self%explicit%pass_state(archive)
+      call archive%leave()
+      call archive%enter('anchor')
+      call self%anchor%pass_state(archive)
+      call archive%leave()
+      call archive%enter('scene')
+      call archive%pass('dt', self%dt)
+      call archive%pass('whole_step', self%whole_step)
+      call archive%pass('curvature', self%curvature)
+      call archive%leave()
+   end subroutine pass_scene
 
    !> Copies a motion into the arrays of another, where it has them.
    pure subroutine copy_contact_motion(from, to)

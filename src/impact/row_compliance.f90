@@ -5,15 +5,15 @@ module row_compliance
    use kinds, only: wp, int64
    use errors, only: error_type
    use equation_of_motion, only: prepare_mass, solve_together
-   use compliance_store, only: choose_shelf, missing_columns, keep_column, add_columns, &
-         most_entries
+   use compliance_store, only: choose_shelf, missing_columns, begin_batch, keep_column, &
+         add_columns, most_entries
    use constraint_rows, only: row_accelerations, slip_products, row_vector, slip_vector
    use impact_scene, only: scene_type
    implicit none
    private
 
    public :: compliance_type, find_compliance, mass_compliance, row_motion, pushed, unit_motions
-   public :: join_rates, split_forces
+   public :: join_rates, split_forces, refill_shelf
 
    !> Rows that take part. With friction on any of them, forces and motions have 2 n entries: those
    !> along the normals, then those along the tangents.
@@ -104,8 +104,6 @@ contains
       integer, intent(in) :: columns(:)
       logical, intent(in) :: on_mass
       type(compliance_type), intent(inout) :: compliance
-      integer, allocatable :: missing(:)
-      real(wp), allocatable :: x(:, :)
       integer :: j
 
       associate (matrices => scene%system%matrices)
@@ -113,12 +111,8 @@ contains
                scene%rows%n, compliance%shelf)
       end associate
       associate (shelf => scene%compliances%shelves(compliance%shelf), n => scene%rows%n)
-         missing = missing_columns(shelf, pack(columns, columns > 0))
-         call column_motions(scene, missing, on_mass, x)
-         do j = 1, size(missing)
-            call keep_column(shelf, missing(j), x(:, j), &
-                  [row_accelerations(scene%rows, x(:, j)), slip_products(scene%rows, x(:, j))])
-         end do
+         call find_and_keep(scene, missing_columns(shelf, pack(columns, columns > 0)), on_mass, &
+               compliance%shelf)
          allocate (compliance%place(size(columns)))
          allocate (compliance%w(size(columns), size(columns)))
          compliance%place = 0
@@ -131,6 +125,42 @@ contains
          end do
       end associate
    end subroutine take_from_shelf
+
+   !> Columns of the matrix at hand are found together and put on its shelf.
+   subroutine find_and_keep(scene, columns, on_mass, shelf)
+      type(scene_type), intent(inout) :: scene
+      integer, intent(in) :: columns(:)
+      logical, intent(in) :: on_mass
+      integer, intent(in) :: shelf
+      real(wp), allocatable :: x(:, :)
+      integer :: j
+
+      if (size(columns) == 0) return
+      call column_motions(scene, columns, on_mass, x)
+      call begin_batch(scene%compliances%shelves(shelf))
+      do j = 1, size(columns)
+         call keep_column(scene%compliances%shelves(shelf), columns(j), x(:, j), &
+               [row_accelerations(scene%rows, x(:, j)), slip_products(scene%rows, x(:, j))])
+      end do
+   end subroutine find_and_keep
+
+   !> Puts columns of the matrix last prepared on a shelf, those of one batch found together: to the
+   !> bit what has been there before.
+   subroutine refill_shelf(scene, columns, batch)
+      type(scene_type), intent(inout) :: scene
+      integer, intent(in) :: columns(:)
+      integer, intent(in) :: batch(:)            !! ascending from 1
+      real(wp) :: factors(3)
+      integer :: shelf, i
+
+      factors = scene%system%matrices%current_factors()
+      call choose_shelf(scene%compliances, scene%system%matrices%generation, factors, &
+            scene%rows%n, shelf)
+      do i = 1, maxval([0, batch])
+         call find_and_keep(scene, pack(columns, batch == i), .not. any(factors(2:3) > 0.0_wp), &
+               shelf)
+      end do
+   end subroutine refill_shelf
 
    !> The columns of the matrix at hand, for this once.
    subroutine solve_for_columns(scene, columns, on_mass, compliance)

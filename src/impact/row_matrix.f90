@@ -1,6 +1,7 @@
 !> A sparse matrix of contact rows over the freedoms of a structure.
 module row_matrix
    use kinds, only: wp
+   use state_archive, only: archive_type
    implicit none
    private
 
@@ -13,9 +14,32 @@ module row_matrix
       integer, allocatable :: first(:)           !! (n+1) row pointers
       integer, allocatable :: freedom(:)         !! columns
       real(wp), allocatable :: coefficient(:)
+   contains
+      procedure :: pass_state
    end type row_matrix_type
 
 contains
+
+   !> The entries, without room beyond them.
+   subroutine pass_state(self, archive)
+      class(row_matrix_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+      integer, allocatable :: freedom(:)
+      real(wp), allocatable :: coefficient(:)
+      integer :: n
+
+      n = 0
+      if (allocated(self%first)) n = self%first(self%n + 1) - 1
+      freedom = self%freedom(:n)
+      coefficient = self%coefficient(:n)
+      call archive%pass('n', self%n)
+      call archive%pass('first', self%first)
+      call archive%pass('freedom', freedom)
+      call archive%pass('coefficient', coefficient)
+      if (.not. archive%reading) return
+      call move_alloc(freedom, self%freedom)
+      call move_alloc(coefficient, self%coefficient)
+   end subroutine pass_state
 
    !> A matrix whose rows are filled one after the other by `start_row` and `add_entry`.
    pure subroutine new_row_matrix(self, n, n_entries)

@@ -6,6 +6,7 @@
 !> by starting from a thousandth of trace K / trace M.
 module eigen_solver
    use kinds, only: wp
+   use memory_shortage, only: check_allocation
    use skyline_matrix, only: skyline_type, diagonal, multiply, absolute
    use skyline_ldlt, only: factorize, ldlt_report_type
    use condensed_eigen, only: condense
@@ -50,10 +51,11 @@ contains
       integer, intent(in) :: n_wanted
       type(eigen_type), intent(out) :: self
       type(skyline_type) :: factors
-      integer :: attempt
+      integer :: attempt, status
       real(wp) :: highest
 
-      allocate (self%lambda(0), self%x(mass%n, 0), self%residual(0))
+      allocate (self%lambda(0), self%x(mass%n, 0), self%residual(0), stat=status)
+      call check_allocation(status)
       if (.not. any(diagonal(mass) > 0.0_wp) .or. n_wanted < 1) return
       call choose_shift(stiffness, mass, self, factors)
       if (self%outcome /= outcome_found) return
@@ -116,7 +118,7 @@ contains
       integer, intent(in) :: n_wanted
       type(eigen_type), intent(inout) :: self
       real(wp), allocatable :: lambda(:), x(:, :)
-      integer :: n_massive, n, n_basis, attempt, info
+      integer :: n_massive, n, n_basis, attempt, info, status
 
       n_massive = count(diagonal(mass) > 0.0_wp)
       if (n_massive > small .and. n_wanted <= n_massive/2) then
@@ -124,7 +126,8 @@ contains
          n = n_wanted + 2
          n_basis = max(2*n + 1, n + 20)
          do attempt = 1, 3
-            allocate (lambda(n), x(mass%n, n))
+            allocate (lambda(n), x(mass%n, n), stat=status)
+            call check_allocation(status)
             call lanczos(factors, mass, self%sigma, min(n_basis, n_massive), lambda, x, info)
             self%lambda = lambda(:n_wanted)
             self%x = x(:, :n_wanted)
@@ -172,12 +175,13 @@ contains
       type(skyline_type) :: absolute_stiffness, absolute_mass
       real(wp), dimension(mass%n) :: force, size_of_force
       real(wp) :: noise, noise_of_shift, quotient
-      integer :: i
+      integer :: i, status
 
       absolute_stiffness = absolute(stiffness)
       absolute_mass = absolute(mass)
       deallocate (self%residual)
-      allocate (self%residual(size(self%lambda)))
+      allocate (self%residual(size(self%lambda)), stat=status)
+      call check_allocation(status)
       do i = 1, size(self%lambda)
          associate (x => self%x(:, i), lambda => self%lambda(i))
             force = multiply(stiffness, x)

@@ -1,5 +1,6 @@
 !> Putting a model together: appending in amortised constant time, and sorting.
 module model_building
+   use memory_shortage, only: check_allocation
    use histories, only: boundary_type, nodal_value_type
    use places, only: place_type
    implicit none
@@ -24,10 +25,15 @@ contains
       integer, intent(inout) :: n
       integer, intent(in) :: item
       integer, allocatable :: longer(:)
+      integer :: status
 
-      if (.not. allocated(list)) allocate (list(8))
+      if (.not. allocated(list)) then
+         allocate (list(8), stat=status)
+         call check_allocation(status)
+      end if
       if (n == size(list)) then
-         allocate (longer(2*n + 8))
+         allocate (longer(2*n + 8), stat=status)
+         call check_allocation(status)
          longer(:n) = list
          call move_alloc(longer, list)
       end if
@@ -40,10 +46,15 @@ contains
       integer, intent(inout) :: n
       type(boundary_type), intent(in) :: item
       type(boundary_type), allocatable :: longer(:)
+      integer :: status
 
-      if (.not. allocated(list)) allocate (list(8))
+      if (.not. allocated(list)) then
+         allocate (list(8), stat=status)
+         call check_allocation(status)
+      end if
       if (n == size(list)) then
-         allocate (longer(2*n + 8))
+         allocate (longer(2*n + 8), stat=status)
+         call check_allocation(status)
          longer(:n) = list
          call move_alloc(longer, list)
       end if
@@ -56,10 +67,15 @@ contains
       integer, intent(inout) :: n
       type(nodal_value_type), intent(in) :: item
       type(nodal_value_type), allocatable :: longer(:)
+      integer :: status
 
-      if (.not. allocated(list)) allocate (list(8))
+      if (.not. allocated(list)) then
+         allocate (list(8), stat=status)
+         call check_allocation(status)
+      end if
       if (n == size(list)) then
-         allocate (longer(2*n + 8))
+         allocate (longer(2*n + 8), stat=status)
+         call check_allocation(status)
          longer(:n) = list
          call move_alloc(longer, list)
       end if
@@ -72,10 +88,12 @@ contains
       integer, intent(inout) :: n
       type(place_type), intent(in) :: item
       type(place_type), allocatable :: longer(:)
+      integer :: status
 
       if (.not. allocated(list)) allocate (list(8))
       if (n == size(list)) then
-         allocate (longer(2*n + 8))
+         allocate (longer(2*n + 8), stat=status)
+         call check_allocation(status)
          longer(:n) = list
          call move_alloc(longer, list)
       end if
@@ -86,24 +104,36 @@ contains
    pure subroutine fit_integers(list, n)
       integer, allocatable, intent(inout) :: list(:)
       integer, intent(in) :: n
+      integer :: status
 
-      if (.not. allocated(list)) allocate (list(0))
+      if (.not. allocated(list)) then
+         allocate (list(0), stat=status)
+         call check_allocation(status)
+      end if
       if (size(list) > n) list = list(:n)
    end subroutine fit_integers
 
    pure subroutine fit_boundaries(list, n)
       type(boundary_type), allocatable, intent(inout) :: list(:)
       integer, intent(in) :: n
+      integer :: status
 
-      if (.not. allocated(list)) allocate (list(0))
+      if (.not. allocated(list)) then
+         allocate (list(0), stat=status)
+         call check_allocation(status)
+      end if
       if (size(list) > n) list = list(:n)
    end subroutine fit_boundaries
 
    pure subroutine fit_nodal_values(list, n)
       type(nodal_value_type), allocatable, intent(inout) :: list(:)
       integer, intent(in) :: n
+      integer :: status
 
-      if (.not. allocated(list)) allocate (list(0))
+      if (.not. allocated(list)) then
+         allocate (list(0), stat=status)
+         call check_allocation(status)
+      end if
       if (size(list) > n) list = list(:n)
    end subroutine fit_nodal_values
 
@@ -111,12 +141,13 @@ contains
    pure subroutine sort_unique(list)
       integer, allocatable, intent(inout) :: list(:)
       integer, allocatable :: other(:), starts(:)
-      integer :: i, n
+      integer :: i, n, status
 
       if (size(list) < 2) return
       call find_runs(list, starts)
       do while (size(starts) > 2)
-         allocate (other(size(list)))
+         allocate (other(size(list)), stat=status)
+         call check_allocation(status)
          call merge_runs(list, starts, other)
          call move_alloc(other, list)
       end do

@@ -3,6 +3,7 @@ module places
    use errors, only: error_type, new_error, status_deck
    use display, only: displayed, display_width, abridged
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -39,6 +40,7 @@ module places
    type :: source_type
       type(source_file_type), allocatable :: files(:)
       integer :: n_files = 0
+      integer :: n_stored = 0   !! files whose text is here before they are read, in their order
    end type source_type
 
 contains
@@ -49,7 +51,7 @@ contains
       type(source_file_type), intent(out) :: self
       character(len=*), intent(in) :: name
       character(len=:), allocatable, intent(inout) :: content   !! not allocated afterwards
-      integer :: i, n, length
+      integer :: i, n, length, status
 
       length = len(content)
       n = 0
@@ -59,7 +61,8 @@ contains
       if (length > 0) then
          if (iachar(content(length:length)) /= code_lf) n = n + 1
       end if
-      allocate (self%first(n), self%last(n))
+      allocate (self%first(n), self%last(n), stat=status)
+      call check_allocation(status)
       self%name = name
       self%n_lines = n
       n = 1

@@ -79,6 +79,7 @@ module steps
       real(wp) :: dt_max = 0.0_wp                !! the largest, 0: T
       real(wp) :: tolerance = 0.0_wp             !! error asked of a dynamic step, 0: default
       integer :: n_modes = 0                     !! frequency steps
+      integer :: restart_frequency = 0           !! increments between states kept, 0: none
       logical :: new_boundaries = .false.        !! OP=NEW: those of earlier steps are dropped
       logical :: new_loads = .false.
       logical :: new_gravity = .false.

@@ -5,9 +5,10 @@
 !> holds the values of the real columns, then of the integer and of the text columns, each in the
 !> order in which the columns were added.
 module column_table
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_is_nan
    use errors, only: error_type, new_error, status_internal, status_numerical
    use hdf5_file, only: hdf5_file_type, series_integer, series_real
-   use kinds, only: wp
+   use kinds, only: int64, wp
    use text, only: to_text
    implicit none
    private
@@ -43,6 +44,8 @@ module column_table
       procedure :: add_integer_column
       procedure :: add_text_column
       procedure :: count_rows
+      procedure :: count_columns
+      procedure :: cut_back
       procedure :: flush => flush_rows
       generic :: append_row => append_reals, append_mixed
       procedure, private :: append_reals, append_mixed
@@ -53,7 +56,7 @@ contains
    !> Makes the group of the table.
    subroutine create(self, file, group, description, error)
       class(column_table_type), intent(out) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       character(len=*), intent(in) :: group   !! '/energy', say
       character(len=*), intent(in) :: description
       type(error_type), allocatable, intent(out) :: error   !! status_file
@@ -65,7 +68,7 @@ contains
    !> Adds a column of reals; only before the first row.
    subroutine add_column(self, file, path, description, error, partial)
       class(column_table_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       character(len=*), intent(in) :: path   !! in the group: 'time', 'node_5/U1'
       character(len=*), intent(in) :: description
       type(error_type), allocatable, intent(out) :: error   !! status_file
@@ -82,7 +85,7 @@ contains
    !> Adds a column of integers; only before the first row.
    subroutine add_integer_column(self, file, path, description, error)
       class(column_table_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       character(len=*), intent(in) :: path, description
       type(error_type), allocatable, intent(out) :: error   !! status_file
 
@@ -96,7 +99,7 @@ contains
    !> Adds a column of texts of at most `length` (and 80) characters; only before the first row.
    subroutine add_text_column(self, file, path, length, description, error)
       class(column_table_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       character(len=*), intent(in) :: path, description
       integer, intent(in) :: length
       type(error_type), allocatable, intent(out) :: error   !! status_file
@@ -114,10 +117,46 @@ contains
       count_rows = self%n_rows
    end function count_rows
 
+   pure integer function count_columns(self)
+      class(column_table_type), intent(in) :: self
+
+      count_columns = self%reals%n + self%integers%n + self%texts%n
+   end function count_columns
+
+   !> Leaves the first rows of a reopened file, to go on behind them.
+   subroutine cut_back(self, file, n_rows, short, error)
+      class(column_table_type), intent(inout) :: self
+      type(hdf5_file_type), intent(inout) :: file
+      integer, intent(in) :: n_rows
+      character(len=:), allocatable, intent(out) :: short   !! a column with fewer, if there is one
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+
+      call cut_columns(file, self%reals, n_rows, short, error)
+      if (allocated(error) .or. allocated(short)) return
+      call cut_columns(file, self%integers, n_rows, short, error)
+      if (allocated(error) .or. allocated(short)) return
+      call cut_columns(file, self%texts, n_rows, short, error)
+      self%n_rows = n_rows
+   end subroutine cut_back
+
+   subroutine cut_columns(file, columns, n_rows, short, error)
+      type(hdf5_file_type), intent(inout) :: file
+      type(columns_type), intent(in) :: columns
+      integer, intent(in) :: n_rows
+      character(len=:), allocatable, intent(out) :: short
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      do i = 1, columns%n
+         call file%cut(trim(columns%paths(i)), int(n_rows, int64), short, error)
+         if (allocated(error) .or. allocated(short)) return
+      end do
+   end subroutine cut_columns
+
    !> Appends a row to a table of reals.
    subroutine append_reals(self, file, values, error)
       class(column_table_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       real(wp), intent(in) :: values(:)
       type(error_type), allocatable, intent(out) :: error   !! status_file
 
@@ -127,7 +166,7 @@ contains
    !> Appends a row to a table of several kinds of columns.
    subroutine append_mixed(self, file, values, integers, texts, error)
       class(column_table_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       real(wp), intent(in) :: values(:)
       integer, intent(in) :: integers(:)
       character(len=*), intent(in) :: texts(:)
@@ -160,10 +199,11 @@ contains
       type(error_type), allocatable, intent(out) :: error
       integer :: i
 
-      if (all(abs(values) <= huge(1.0_wp))) return
+      ! to compare a NaN is an invalid operation, to ask for one is not
+      if (all(ieee_is_finite(values))) return
       do i = 1, size(values)
-         if (abs(values(i)) <= huge(1.0_wp)) cycle
-         if (self%reals%partial(i) .and. .not. abs(values(i)) > huge(1.0_wp)) cycle
+         if (ieee_is_finite(values(i))) cycle
+         if (self%reals%partial(i) .and. ieee_is_nan(values(i))) cycle
          call new_error(error, status_numerical, trim(self%reals%paths(i))//' is not finite (NaN ' &
                //'or infinite) at time '//to_text(values(1))//new_line('a') &
                //'  cure: a smaller step; or other units, so that no number overflows')
@@ -171,15 +211,38 @@ contains
       end do
    end subroutine check_finite
 
-   !> Writes the rows held in memory, column by column.
+   !> Writes the rows held in memory; of those that do not fit on the disk the first ones.
    subroutine flush_rows(self, file, error)
       class(column_table_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(error_type), allocatable, intent(out) :: error   !! status_file
-      integer :: column, n
+      type(error_type), allocatable :: trouble
+      integer :: n
 
       n = self%n_held
       if (n == 0) return
+      call file%reserve(bytes_needed(self, n, file%deflate > 0), error)
+      if (allocated(error)) then
+         do while (n > 0)
+            n = n/2
+            call file%reserve(bytes_needed(self, n, file%deflate > 0), trouble)
+            if (.not. allocated(trouble)) exit
+         end do
+      end if
+      if (n > 0) call write_rows(self, file, n, trouble)
+      if (allocated(trouble)) call move_alloc(trouble, error)
+      self%n_rows = self%n_rows - (self%n_held - n)
+      self%n_held = 0
+   end subroutine flush_rows
+
+   !> Writes the first rows of those held in memory, column by column.
+   subroutine write_rows(self, file, n, error)
+      type(column_table_type), intent(in) :: self
+      type(hdf5_file_type), intent(inout) :: file
+      integer, intent(in) :: n
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+      integer :: column
+
       do column = 1, self%reals%n
          call file%append(trim(self%reals%paths(column)), self%held_reals(:n, column), error)
          if (allocated(error)) return
@@ -192,8 +255,26 @@ contains
          call file%append(trim(self%texts%paths(column)), self%held_texts(:n, column), error)
          if (allocated(error)) return
       end do
-      self%n_held = 0
-   end subroutine flush_rows
+   end subroutine write_rows
+
+   !> Bytes by which the file grows when the next rows are written: the chunks that they begin, and
+   !> their entries in the tables of chunks. A compressed chunk that grows is written anew.
+   pure function bytes_needed(self, n, compressed) result(bytes)
+      type(column_table_type), intent(in) :: self
+      integer, intent(in) :: n                   !! rows
+      logical, intent(in) :: compressed
+      integer(int64) :: bytes
+      integer(int64), parameter :: entry = 256, table = 4096
+      integer :: n_chunks, n_written
+
+      n_written = self%n_rows - self%n_held
+      n_chunks = (n_written + n + chunk_rows - 1)/chunk_rows &
+            - (n_written + chunk_rows - 1)/chunk_rows
+      if (compressed) n_chunks = n_chunks + 1
+      bytes = n_chunks*((self%reals%n + self%integers%n)*(8_int64*chunk_rows + entry) &
+            + self%texts%n*(int(text_length, int64)*chunk_rows + entry))
+      if (n_chunks > 0) bytes = bytes + table*(self%reals%n + self%integers%n + self%texts%n)
+   end function bytes_needed
 
    !> Allocates the memory for the rows; the columns are fixed from here on.
    subroutine start(self)

@@ -16,7 +16,7 @@ contains
 
    !> Writes the group. The clock of the scene has been stopped.
    subroutine write_cost(file, scene, error)
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(scene_type), intent(in) :: scene
       type(error_type), allocatable, intent(out) :: error
       integer :: i
@@ -40,7 +40,7 @@ contains
    end subroutine write_cost
 
    subroutine write_counts(file, scene, error)
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(scene_type), intent(in) :: scene
       type(error_type), allocatable, intent(out) :: error
 

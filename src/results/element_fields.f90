@@ -42,7 +42,7 @@ contains
    subroutine new_element_fields(self, grid, file, wanted, n_elements, with_points, error)
       type(element_fields_type), intent(out) :: self
       type(vtkhdf_grid_type), intent(inout) :: grid
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       logical, intent(in) :: wanted(n_quantities)
       integer, intent(in) :: n_elements
       logical, intent(in) :: with_points

@@ -34,7 +34,7 @@ contains
    !> several.
    subroutine new_energies(table, file, scene, error)
       type(column_table_type), intent(inout) :: table
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(scene_type), intent(in) :: scene
       type(error_type), allocatable, intent(out) :: error
       character(len=:), allocatable :: name, scheme
@@ -64,7 +64,7 @@ contains
    !> Appends a row.
    subroutine record_energies(table, file, scene, motion, error)
       type(column_table_type), intent(inout) :: table
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(scene_type), intent(inout) :: scene
       type(contact_motion_type), intent(in) :: motion
       type(error_type), allocatable, intent(out) :: error

@@ -3,6 +3,7 @@
 module gap_probe
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
    use kinds, only: wp
+   use state_archive, only: archive_type
    use contact_geometry, only: contact_geometry_type
    use constraint_rows, only: rows_type, row_gaps
    use row_placement, only: place_rows
@@ -22,6 +23,8 @@ module gap_probe
       type(rows_type) :: rows
       type(contact_geometry_type) :: geometry
       real(wp) :: reach = 0.0_wp
+   contains
+      procedure :: pass_state
    end type gap_probe_type
 
 contains
@@ -37,6 +40,14 @@ contains
       self%reach = widest_reach*scene%geometry%size &
             *min(1.0_wp, many_rows/max(1.0_wp, real(scene%rows%n, wp)))
    end subroutine new_gap_probe
+
+   !> What searches leave behind.
+   subroutine pass_state(self, archive)
+      class(gap_probe_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call self%geometry%pass_state(archive)
+   end subroutine pass_state
 
    !> Gaps of all rows, NaN where there is no partner within the reach.
    subroutine probe_gaps(self, scene, motion, gaps)

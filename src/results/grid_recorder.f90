@@ -51,7 +51,7 @@ contains
    !> Writes the mesh and makes the fields: displacements always, others on request.
    subroutine new_grid(self, file, model, plan, has_solids, error)
       type(grid_type), intent(out) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(model_type), intent(in) :: model
       type(plan_type), intent(in) :: plan
       logical, intent(in) :: has_solids
@@ -110,7 +110,7 @@ contains
 
    subroutine add_field(self, file, q, error)
       type(grid_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       integer, intent(in) :: q
       type(error_type), allocatable, intent(out) :: error
       integer :: i
@@ -123,7 +123,7 @@ contains
    !> Appends a frame.
    subroutine record_frame(self, file, scene, list, snapshot, error)
       type(grid_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(scene_type), intent(inout) :: scene
       type(contact_pair_list_type), intent(in) :: list
       type(snapshot_type), intent(in) :: snapshot

@@ -1,28 +1,25 @@
-!> The calls to the HDF5 library, the only ones: datasets, attributes and growing datasets by path.
-!> hdf5_file and hdf5_reader give them types and error messages.
+!> The calls to the HDF5 library, with those of hdf5_opening and hdf5_changes the only ones: datasets,
+!> attributes and growing datasets by path. hdf5_file and hdf5_reader give them types and messages.
 module hdf5_calls
    use, intrinsic :: iso_c_binding, only: c_char, c_loc, c_ptr
-   use hdf5, only: h5_integer_kind, h5aclose_f, h5acreate_f, h5aexists_f, h5aopen_f, &
-         h5awrite_f, h5dclose_f, h5dcreate_f, h5dget_space_f, h5dont_atexit_f, h5dopen_f, &
-         h5dread_f, h5dset_extent_f, h5dwrite_f, h5eset_auto_f, h5f_acc_rdonly_f, &
-         h5f_acc_trunc_f, h5f_close_strong_f, h5f_scope_global_f, h5fclose_f, h5fcreate_f, &
-         h5fflush_f, h5fopen_f, h5gclose_f, h5gcreate_f, h5kind_to_type, h5oclose_f, h5oopen_f, &
-         h5open_f, h5p_dataset_create_f, h5p_file_access_f, h5p_link_create_f, h5pclose_f, &
-         h5pcreate_f, h5pset_chunk_f, h5pset_create_inter_group_f, h5pset_deflate_f, &
-         h5pset_fclose_degree_f, h5pset_shuffle_f, &
-         h5s_scalar_f, h5s_select_set_f, h5s_unlimited_f, h5sclose_f, h5screate_f, &
-         h5screate_simple_f, h5sget_simple_extent_dims_f, h5sget_simple_extent_ndims_f, &
-         h5sselect_hyperslab_f, h5t_fortran_s1, h5t_ieee_f64le, h5t_native_double, &
-         h5t_native_integer, h5t_std_i64le, h5t_std_u8le, h5t_str_nullpad_f, h5tclose_f, &
-         h5tcopy_f, h5tset_size_f, h5tset_strpad_f, hid_t, hsize_t, size_t
+   use hdf5, only: h5_integer_kind, h5aclose_f, h5acreate_f, h5aexists_f, h5aopen_f, h5awrite_f, &
+         h5dclose_f, h5dcreate_f, h5dget_space_f, h5dopen_f, h5dread_f, h5dset_extent_f, &
+         h5dwrite_f, h5gclose_f, h5gcreate_f, h5kind_to_type, h5oclose_f, h5oopen_f, &
+         h5p_dataset_create_f, h5p_link_create_f, h5pclose_f, h5pcreate_f, h5pset_chunk_f, &
+         h5pset_create_inter_group_f, h5pset_deflate_f, h5pset_shuffle_f, h5s_scalar_f, &
+         h5s_select_set_f, h5s_unlimited_f, h5sclose_f, h5screate_f, h5screate_simple_f, &
+         h5sget_simple_extent_dims_f, h5sget_simple_extent_ndims_f, h5sselect_hyperslab_f, &
+         h5t_fortran_s1, h5t_ieee_f64le, h5t_native_double, h5t_native_integer, h5t_std_i64le, &
+         h5t_std_u8le, h5t_str_nullpad_f, h5tclose_f, h5tcopy_f, h5tset_size_f, h5tset_strpad_f, &
+         hid_t, hsize_t, size_t
    use kinds, only: int64
    implicit none
    private
 
    public :: hid_t, hsize_t, storage_type, chunks_type
    public :: real_storage, integer_storage, long_storage, byte_storage, text_storage, close_storage
-   public :: create_file, open_file, flush_file, close_file, make_group
-   public :: put_dataset, put_attribute, make_series, append_block, get_dims, get_dataset
+   public :: make_group
+   public :: put_dataset, put_attribute, make_series, append_block, get_dims, shape_of, get_dataset
 
    !> How one kind of value is stored and how it lies in memory.
    type :: storage_type
@@ -86,65 +83,6 @@ contains
       call h5tclose_f(storage%in_file, status)
       call h5tclose_f(storage%in_memory, status)
    end subroutine close_storage
-
-   !> Starts the library with its error printing off, and without its clean-up at the end of the
-   !> program: after a disk that was full that ends in a segmentation fault (HDF5 1.10).
-   subroutine start_library(silenced)
-      integer, intent(out) :: silenced
-      integer :: ignored   ! when the library runs already: fails, or is left undefined (1.10.10)
-
-      call h5dont_atexit_f(ignored)
-      call h5open_f(ignored)
-      call h5eset_auto_f(0, silenced)
-   end subroutine start_library
-
-   !> Creates the file or replaces it.
-   subroutine create_file(path, file, failed)
-      character(len=*), intent(in) :: path
-      integer(hid_t), intent(out) :: file
-      logical, intent(out) :: failed
-      integer(hid_t) :: access
-      integer :: status(4)
-
-      file = -1
-      call start_library(status(1))
-      call h5pcreate_f(h5p_file_access_f, access, status(2))
-      call h5pset_fclose_degree_f(access, h5f_close_strong_f, status(3))
-      call h5fcreate_f(path, h5f_acc_trunc_f, file, status(4), access_prp=access)
-      failed = any(status < 0)
-      call h5pclose_f(access, status(1))
-   end subroutine create_file
-
-   !> Opens an existing file for reading.
-   subroutine open_file(path, file, failed)
-      character(len=*), intent(in) :: path
-      integer(hid_t), intent(out) :: file
-      logical, intent(out) :: failed
-      integer :: status(2)
-
-      file = -1
-      call start_library(status(1))
-      call h5fopen_f(path, h5f_acc_rdonly_f, file, status(2))
-      failed = any(status < 0)
-   end subroutine open_file
-
-   subroutine flush_file(file, failed)
-      integer(hid_t), intent(in) :: file
-      logical, intent(out) :: failed
-      integer :: status
-
-      call h5fflush_f(file, h5f_scope_global_f, status)
-      failed = status < 0
-   end subroutine flush_file
-
-   subroutine close_file(file, failed)
-      integer(hid_t), intent(in) :: file
-      logical, intent(out) :: failed
-      integer :: status
-
-      call h5fclose_f(file, status)
-      failed = status < 0
-   end subroutine close_file
 
    subroutine make_group(file, path, description, failed)
       integer(hid_t), intent(in) :: file

@@ -2,17 +2,16 @@
 !>
 !> Missing groups on the way to a new dataset are made. Integers are stored with 64 bits (and handed
 !> over so: the library's own conversion clears a megabyte for each dataset), reals in
-!> double precision. An array of shape (3, n) appears as n x 3 in the file. Every failure (no
-!> permission, disk full, ...) comes back as an error of status_file that names the file.
+!> double precision. An array of shape (3, n) appears as n x 3 in the file.
 module hdf5_file
    use, intrinsic :: iso_c_binding, only: c_char, c_loc, c_ptr
-   use errors, only: error_type, new_error, status_file
-   use hdf5_calls, only: append_block, byte_storage, chunks_type, close_file, close_storage, &
-         create_file, flush_file, hid_t, hsize_t, integer_storage, long_storage, make_group, &
-         make_series, put_attribute, put_dataset, real_storage, storage_type, text_storage
+   use errors, only: error_type
+   use hdf5_calls, only: append_block, byte_storage, chunks_type, close_storage, hsize_t, &
+         integer_storage, long_storage, make_series, put_attribute, real_storage, storage_type, &
+         text_storage
+   use hdf5_output, only: hdf5_output_type
    use, intrinsic :: iso_fortran_env, only: int8
    use kinds, only: int64, wp
-   use write_obstacles, only: write_obstacle
    implicit none
    private
 
@@ -23,28 +22,19 @@ module hdf5_file
    integer, parameter :: series_integer = 2
 
    !> A file open for writing. It must be closed: nothing closes it by itself.
-   type :: hdf5_file_type
-      private
-      integer(hid_t) :: id = -1
-      character(len=:), allocatable :: path
-      integer :: deflate = 0   ! compression of the series
+   type, extends(hdf5_output_type) :: hdf5_file_type
    contains
-      procedure :: create
-      procedure :: compress
-      procedure :: is_open
-      procedure :: flush => flush_to_disk
-      procedure :: close => close_for_good
-      procedure :: create_group
       procedure :: write_bytes
       procedure :: create_series
       procedure :: create_text_series
-      generic :: write_dataset => write_reals, write_real_table, write_integers, &
+      generic :: write_dataset => write_reals, write_real_table, write_integers, write_longs, &
             write_integer_table, write_text, write_texts
+      generic :: overwrite => overwrite_reals, overwrite_longs
       generic :: set_attribute => set_integer, set_integers, set_real, set_text
       generic :: append => append_reals, append_real_table, append_integers, append_longs, &
             append_texts
       procedure, private :: write_reals, write_real_table, write_integers, write_integer_table
-      procedure, private :: write_text, write_texts
+      procedure, private :: write_text, write_texts, write_longs, overwrite_reals, overwrite_longs
       procedure, private :: set_integer, set_integers, set_real, set_text
       procedure, private :: append_reals, append_real_table, append_integers, append_longs
       procedure, private :: append_texts
@@ -52,170 +42,116 @@ module hdf5_file
 
 contains
 
-   !> Creates the file; one that exists is replaced.
-   subroutine create(self, path, error)
-      class(hdf5_file_type), intent(out) :: self
-      character(len=*), intent(in) :: path
-      type(error_type), allocatable, intent(out) :: error   !! status_file
-      logical :: failed
-
-      self%path = path
-      call create_file(path, self%id, failed)
-      if (.not. failed) return
-      self%id = -1
-      call new_error(error, status_file, "cannot create '"//path//"': "//write_obstacle(path))
-   end subroutine create
-
-   !> Compresses all series made from here on.
-   pure subroutine compress(self, level)
-      class(hdf5_file_type), intent(inout) :: self
-      integer, intent(in) :: level   !! 0, not at all, to 9
-
-      self%deflate = level
-   end subroutine compress
-
-   !> Whether the file was created and not yet closed.
-   pure logical function is_open(self)
-      class(hdf5_file_type), intent(in) :: self
-
-      is_open = self%id >= 0
-   end function is_open
-
-   !> Hands everything written so far to the operating system.
-   subroutine flush_to_disk(self, error)
-      class(hdf5_file_type), intent(in) :: self
-      type(error_type), allocatable, intent(out) :: error   !! status_file
-      logical :: failed
-
-      call flush_file(self%id, failed)
-      if (failed) call write_error(self, 'everything', error)
-   end subroutine flush_to_disk
-
-   !> Closes the file; does nothing when it is not open.
-   subroutine close_for_good(self, error)
-      class(hdf5_file_type), intent(inout) :: self
-      type(error_type), allocatable, intent(out) :: error   !! status_file
-      logical :: failed
-
-      if (.not. self%is_open()) return
-      call close_file(self%id, failed)
-      self%id = -1
-      if (failed) call write_error(self, 'everything', error)
-   end subroutine close_for_good
-
-   !> Makes a group; it must not exist yet.
-   subroutine create_group(self, path, description, error)
-      class(hdf5_file_type), intent(in) :: self
-      character(len=*), intent(in) :: path, description
-      type(error_type), allocatable, intent(out) :: error   !! status_file
-      logical :: failed
-
-      call make_group(self%id, path, description, failed)
-      if (failed) call write_error(self, path, error)
-   end subroutine create_group
-
    subroutine write_reals(self, path, values, description, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path, description
       real(wp), intent(in), contiguous, target :: values(:)
       type(error_type), allocatable, intent(out) :: error
-      logical :: failed
 
-      call put_dataset(self%id, path, description, real_storage(), shape(values, hsize_t), &
-            c_loc(values), failed)
-      if (failed) call write_error(self, path, error)
+      call self%put(path, description, real_storage(), shape(values, hsize_t), c_loc(values), error)
    end subroutine write_reals
 
    subroutine write_real_table(self, path, values, description, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path, description
       real(wp), intent(in), contiguous, target :: values(:, :)
       type(error_type), allocatable, intent(out) :: error
-      logical :: failed
 
-      call put_dataset(self%id, path, description, real_storage(), shape(values, hsize_t), &
-            c_loc(values), failed)
-      if (failed) call write_error(self, path, error)
+      call self%put(path, description, real_storage(), shape(values, hsize_t), c_loc(values), error)
    end subroutine write_real_table
 
    subroutine write_integers(self, path, values, description, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path, description
       integer, intent(in) :: values(:)
       type(error_type), allocatable, intent(out) :: error
       integer(int64), allocatable, target :: longs(:)
-      logical :: failed
 
       longs = int(values, int64)
-      call put_dataset(self%id, path, description, long_storage(), shape(longs, hsize_t), &
-            c_loc(longs), failed)
-      if (failed) call write_error(self, path, error)
+      call self%put(path, description, long_storage(), shape(longs, hsize_t), c_loc(longs), error)
    end subroutine write_integers
 
    subroutine write_integer_table(self, path, values, description, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path, description
       integer, intent(in) :: values(:, :)
       type(error_type), allocatable, intent(out) :: error
       integer(int64), allocatable, target :: longs(:, :)
-      logical :: failed
 
       longs = int(values, int64)
-      call put_dataset(self%id, path, description, long_storage(), shape(longs, hsize_t), &
-            c_loc(longs), failed)
-      if (failed) call write_error(self, path, error)
+      call self%put(path, description, long_storage(), shape(longs, hsize_t), c_loc(longs), error)
    end subroutine write_integer_table
 
    !> Integers 0 to 255, stored as unsigned 8 bit numbers.
    subroutine write_bytes(self, path, values, description, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path, description
       integer, intent(in) :: values(:)
       type(error_type), allocatable, intent(out) :: error   !! status_file
       integer(int8), allocatable, target :: bytes(:)
-      logical :: failed
 
       bytes = int(modulo(values + 128, 256) - 128, int8)
-      call put_dataset(self%id, path, description, byte_storage(), shape(bytes, hsize_t), &
-            c_loc(bytes), failed)
-      if (failed) call write_error(self, path, error)
+      call self%put(path, description, byte_storage(), shape(bytes, hsize_t), c_loc(bytes), error)
    end subroutine write_bytes
 
    !> One text as a scalar of exactly its length.
    subroutine write_text(self, path, value, description, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path, value, description
       type(error_type), allocatable, intent(out) :: error
       character(kind=c_char), allocatable, target :: bytes(:)
       type(storage_type) :: storage
-      logical :: failed
 
       call to_bytes([value], bytes)
       storage = text_storage(size(bytes))
-      call put_dataset(self%id, path, description, storage, [integer(hsize_t) ::], c_loc(bytes), &
-            failed)
+      call self%put(path, description, storage, [integer(hsize_t) ::], c_loc(bytes), error)
       call close_storage(storage)
-      if (failed) call write_error(self, path, error)
    end subroutine write_text
 
    subroutine write_texts(self, path, values, description, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path, values(:), description
       type(error_type), allocatable, intent(out) :: error
       character(kind=c_char), allocatable, target :: bytes(:)
       type(storage_type) :: storage
-      logical :: failed
 
       call to_bytes(values, bytes)
       storage = text_storage(max(1, len(values)))
-      call put_dataset(self%id, path, description, storage, shape(values, hsize_t), c_loc(bytes), &
-            failed)
+      call self%put(path, description, storage, shape(values, hsize_t), c_loc(bytes), error)
       call close_storage(storage)
-      if (failed) call write_error(self, path, error)
    end subroutine write_texts
 
+   subroutine write_longs(self, path, values, description, error)
+      class(hdf5_file_type), intent(inout) :: self
+      character(len=*), intent(in) :: path, description
+      integer(int64), intent(in), contiguous, target :: values(:)
+      type(error_type), allocatable, intent(out) :: error
+
+      call self%put(path, description, long_storage(), shape(values, hsize_t), c_loc(values), error)
+   end subroutine write_longs
+
+   subroutine overwrite_reals(self, path, values, description, error)
+      class(hdf5_file_type), intent(inout) :: self
+      character(len=*), intent(in) :: path, description
+      real(wp), intent(in), contiguous, target :: values(:)
+      type(error_type), allocatable, intent(out) :: error
+
+      call self%renew(path, description, real_storage(), shape(values, hsize_t), c_loc(values), &
+            error)
+   end subroutine overwrite_reals
+
+   subroutine overwrite_longs(self, path, values, description, error)
+      class(hdf5_file_type), intent(inout) :: self
+      character(len=*), intent(in) :: path, description
+      integer(int64), intent(in), contiguous, target :: values(:)
+      type(error_type), allocatable, intent(out) :: error
+
+      call self%renew(path, description, long_storage(), shape(values, hsize_t), c_loc(values), &
+            error)
+   end subroutine overwrite_longs
+
    subroutine set_integer(self, object, name, value, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: object, name
       integer, intent(in) :: value
       type(error_type), allocatable, intent(out) :: error
@@ -225,11 +161,11 @@ contains
       number = value
       call put_attribute(self%id, object, name, integer_storage(), [integer(hsize_t) ::], &
             c_loc(number), failed)
-      if (failed) call write_error(self, object//'@'//name, error)
+      if (failed) call self%write_failure(object//'@'//name, error)
    end subroutine set_integer
 
    subroutine set_integers(self, object, name, values, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: object, name
       integer, intent(in), contiguous, target :: values(:)
       type(error_type), allocatable, intent(out) :: error
@@ -237,11 +173,11 @@ contains
 
       call put_attribute(self%id, object, name, integer_storage(), shape(values, hsize_t), &
             c_loc(values), failed)
-      if (failed) call write_error(self, object//'@'//name, error)
+      if (failed) call self%write_failure(object//'@'//name, error)
    end subroutine set_integers
 
    subroutine set_real(self, object, name, value, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: object, name
       real(wp), intent(in) :: value
       type(error_type), allocatable, intent(out) :: error
@@ -251,12 +187,12 @@ contains
       number = value
       call put_attribute(self%id, object, name, real_storage(), [integer(hsize_t) ::], &
             c_loc(number), failed)
-      if (failed) call write_error(self, object//'@'//name, error)
+      if (failed) call self%write_failure(object//'@'//name, error)
    end subroutine set_real
 
    !> A text of exactly its length: nothing padded, nothing trimmed.
    subroutine set_text(self, object, name, value, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: object, name, value
       type(error_type), allocatable, intent(out) :: error
       character(kind=c_char), allocatable, target :: bytes(:)
@@ -268,12 +204,12 @@ contains
       call put_attribute(self%id, object, name, storage, [integer(hsize_t) ::], c_loc(bytes), &
             failed)
       call close_storage(storage)
-      if (failed) call write_error(self, object//'@'//name, error)
+      if (failed) call self%write_failure(object//'@'//name, error)
    end subroutine set_text
 
    !> Makes an empty dataset of numbers that grows by `append`.
    subroutine create_series(self, path, kind, n_components, chunk_rows, description, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path, description
       integer, intent(in) :: kind           !! series_real or series_integer
       integer, intent(in) :: n_components   !! 0: shape (N) in the file; n: shape N x n
@@ -282,31 +218,37 @@ contains
       type(storage_type) :: storage
       logical :: failed
 
+      if (self%reopened) then
+         if (self%holds(path)) return
+      end if
       storage = real_storage()
       if (kind == series_integer) storage = integer_storage()
       call make_series(self%id, path, description, storage, n_components, &
             chunks_type(chunk_rows, self%deflate), failed)
-      if (failed) call write_error(self, path, error)
+      if (failed) call self%write_failure(path, error)
    end subroutine create_series
 
    !> Makes an empty list of texts that grows by `append`; longer texts are cut.
    subroutine create_text_series(self, path, length, chunk_rows, description, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path, description
       integer, intent(in) :: length, chunk_rows
       type(error_type), allocatable, intent(out) :: error   !! status_file
       type(storage_type) :: storage
       logical :: failed
 
+      if (self%reopened) then
+         if (self%holds(path)) return
+      end if
       storage = text_storage(length)
       call make_series(self%id, path, description, storage, 0, &
             chunks_type(chunk_rows, self%deflate), failed)
       call close_storage(storage)
-      if (failed) call write_error(self, path, error)
+      if (failed) call self%write_failure(path, error)
    end subroutine create_text_series
 
    subroutine append_reals(self, path, values, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path
       real(wp), intent(in), contiguous, target :: values(:)
       type(error_type), allocatable, intent(out) :: error
@@ -315,7 +257,7 @@ contains
    end subroutine append_reals
 
    subroutine append_real_table(self, path, values, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path
       real(wp), intent(in), contiguous, target :: values(:, :)
       type(error_type), allocatable, intent(out) :: error
@@ -324,7 +266,7 @@ contains
    end subroutine append_real_table
 
    subroutine append_integers(self, path, values, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path
       integer, intent(in) :: values(:)
       type(error_type), allocatable, intent(out) :: error
@@ -333,7 +275,7 @@ contains
    end subroutine append_integers
 
    subroutine append_longs(self, path, values, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path
       integer(int64), intent(in), contiguous, target :: values(:)
       type(error_type), allocatable, intent(out) :: error
@@ -342,7 +284,7 @@ contains
    end subroutine append_longs
 
    subroutine append_texts(self, path, values, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path, values(:)
       type(error_type), allocatable, intent(out) :: error
       character(kind=c_char), allocatable, target :: bytes(:)
@@ -355,7 +297,7 @@ contains
    end subroutine append_texts
 
    subroutine append_values(self, path, storage, n_values, address, error)
-      class(hdf5_file_type), intent(in) :: self
+      class(hdf5_file_type), intent(inout) :: self
       character(len=*), intent(in) :: path
       type(storage_type), intent(in) :: storage
       integer, intent(in) :: n_values
@@ -364,7 +306,7 @@ contains
       logical :: failed
 
       call append_block(self%id, path, storage, n_values, address, failed)
-      if (failed) call write_error(self, path, error)
+      if (failed) call self%write_failure(path, error)
    end subroutine append_values
 
    !> The characters of the texts, one after the other; a blank for a text of no length.
@@ -376,17 +318,5 @@ contains
       bytes = c_char_' '
       if (len(texts) > 0) bytes = transfer(texts, bytes)
    end subroutine to_bytes
-
-   subroutine write_error(self, object, error)
-      class(hdf5_file_type), intent(in) :: self
-      character(len=*), intent(in) :: object
-      type(error_type), allocatable, intent(out) :: error
-      character(len=:), allocatable :: path
-
-      path = '(no file)'
-      if (allocated(self%path)) path = self%path
-      call new_error(error, status_file, 'cannot write '//object//" to '"//path// &
-            "': disk full, no access any more, or the file is not open")
-   end subroutine write_error
 
 end module hdf5_file

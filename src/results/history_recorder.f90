@@ -58,7 +58,7 @@ contains
    !> pairs.
    subroutine new_history(self, file, model, scene, list, plan, error)
       type(history_type), intent(out) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(model_type), intent(in) :: model
       type(scene_type), intent(in) :: scene
       type(contact_pair_list_type), intent(in) :: list
@@ -80,7 +80,7 @@ contains
 
    subroutine add_nodes(self, file, model, scene, plan, error)
       type(history_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(model_type), intent(in) :: model
       type(scene_type), intent(in) :: scene
       type(plan_type), intent(in) :: plan
@@ -107,7 +107,7 @@ contains
 
    subroutine add_elements(self, file, model, scene, plan, error)
       type(history_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(model_type), intent(in) :: model
       type(scene_type), intent(in) :: scene
       type(plan_type), intent(in) :: plan
@@ -133,7 +133,7 @@ contains
    !> The columns of one quantity of one element: rows of what `recover` gives, averaged.
    subroutine add_element(self, file, column, id, n_stresses, error)
       type(history_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(column_type), intent(in) :: column    !! without its component
       character(len=*), intent(in) :: id
       integer, intent(in) :: n_stresses
@@ -170,7 +170,7 @@ contains
 
    subroutine add_pairs(self, file, list, plan, error)
       type(history_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(contact_pair_list_type), intent(in) :: list
       type(plan_type), intent(in) :: plan
       type(error_type), allocatable, intent(out) :: error
@@ -201,7 +201,7 @@ contains
 
    subroutine add(self, file, column, path, description, error)
       type(history_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(column_type), intent(in) :: column
       character(len=*), intent(in) :: path, description
       type(error_type), allocatable, intent(out) :: error
@@ -222,7 +222,7 @@ contains
    !> Appends a row.
    subroutine record_history(self, file, scene, list, snapshot, error)
       type(history_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(scene_type), intent(inout) :: scene
       type(contact_pair_list_type), intent(in) :: list
       type(snapshot_type), intent(in) :: snapshot

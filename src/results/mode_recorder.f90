@@ -40,6 +40,7 @@ contains
          call record_frame(self%grid, self%file, scene, list, snapshot, error)
          if (allocated(error)) return
       end do
+      self%has_records = .true.
    end subroutine record_modes
 
    subroutine write_numbers(self, modes, error)

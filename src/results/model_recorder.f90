@@ -15,7 +15,7 @@ contains
 
    !> Makes the group with all that the deck alone tells.
    subroutine write_model(file, model, error)
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(model_type), intent(in) :: model
       type(error_type), allocatable, intent(out) :: error
       integer :: i
@@ -40,7 +40,7 @@ contains
 
    !> Planes and circles, where there are any.
    subroutine write_rigid_surfaces(file, model, error)
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(model_type), intent(in) :: model
       type(error_type), allocatable, intent(out) :: error
       real(wp), allocatable :: planes(:, :), circles(:, :)
@@ -70,7 +70,7 @@ contains
 
    !> The nodes of a surface and the edges between them.
    subroutine write_surface(file, surface, error)
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(surface_type), intent(in) :: surface
       type(error_type), allocatable, intent(out) :: error
       character(len=:), allocatable :: group

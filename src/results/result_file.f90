@@ -2,6 +2,7 @@
 module result_file
    use kinds, only: wp
    use errors, only: error_type
+   use part_file, only: part_file_type
    use model, only: model_type
    use steps, only: request_type, request_node_print, request_element_print, &
          request_contact_print, request_energy_print, request_node_file, request_element_file, &
@@ -21,6 +22,7 @@ module result_file
    use energy_recorder, only: new_energies, record_energies
    use grid_recorder, only: grid_type, new_grid, record_frame
    use model_recorder, only: write_model
+   use restart_group, only: restart_group_type
    use gap_probe, only: gap_probe_type, new_gap_probe, probe_gaps
    use contact_faces, only: contact_face_type, new_contact_faces, find_pressures, find_row_forces, &
          share_contact
@@ -28,7 +30,7 @@ module result_file
    private
 
    public :: result_file_type, open_results, record_increment, close_results, event_name
-   public :: write_system, flush_results
+   public :: write_system, make_parts, flush_results, publish_results
 
    !> Everything open.
    type :: result_file_type
@@ -40,7 +42,9 @@ module result_file
       type(column_table_type) :: events
       type(gap_probe_type) :: gaps
       type(contact_face_type), allocatable :: faces(:)
+      type(restart_group_type) :: restart
       integer :: n_elements = 0
+      logical :: has_records = .false.           !! something worth a file of results
    end type result_file_type
 
    integer, parameter :: text_length = 80
@@ -48,9 +52,22 @@ module result_file
 contains
 
    !> Creates the file with all its groups. The model is known to be sound by now.
-   subroutine open_results(self, path, model, scene, list, error)
+   subroutine open_results(self, place, path, model, scene, list, error)
       type(result_file_type), intent(out) :: self
-      character(len=*), intent(in) :: path
+      type(part_file_type), intent(in) :: place  !! taken over
+      character(len=*), intent(in) :: path       !! for messages
+      type(model_type), intent(in) :: model
+      type(scene_type), intent(in) :: scene
+      type(contact_pair_list_type), intent(in) :: list
+      type(error_type), allocatable, intent(out) :: error
+
+      call self%file%create_claimed(place, path, error)
+      if (.not. allocated(error)) call make_parts(self, model, scene, list, error)
+   end subroutine open_results
+
+   !> All groups of the file, which is open.
+   subroutine make_parts(self, model, scene, list, error)
+      type(result_file_type), intent(inout) :: self
       type(model_type), intent(in) :: model
       type(scene_type), intent(in) :: scene
       type(contact_pair_list_type), intent(in) :: list
@@ -59,8 +76,6 @@ contains
 
       self%n_elements = model%elements%n
       call new_plan(self%plan, model)
-      call self%file%create(path, error)
-      if (allocated(error)) return
       call self%file%compress(model%compression)
       call new_grid(self%grid, self%file, model, self%plan, any([(scene%system%structure%groups(i) &
             %element%is_solid, i=1, size(scene%system%structure%groups))]), error)
@@ -74,7 +89,7 @@ contains
       call new_gap_probe(self%gaps, scene)
       call new_contact_faces(self%faces, model, list)
       call write_model(self%file, model, error)
-   end subroutine open_results
+   end subroutine make_parts
 
    !> The table of events; its texts are as long as the longest.
    subroutine new_events(self, list, error)
@@ -214,6 +229,7 @@ contains
       if (.not. allocated(error) .and. (print_due .or. frame_due)) call record_state(self, scene, &
             list, motion, [print_due, frame_due], error)
       call leave(scene%system%cost, outer)
+      self%has_records = self%has_records .or. .not. allocated(error)
    end subroutine record_increment
 
    !> A row of the histories, a frame, or both, of the same state.
@@ -298,37 +314,58 @@ contains
       end select
    end function event_name
 
-   !> Brings all that is held in memory into the file.
+   !> Brings all that is held in memory into the part file; where one table fails for want of space
+   !> another may still fit.
    subroutine flush_results(self, error)
       type(result_file_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error
+      type(error_type), allocatable :: other
 
       call self%grid%grid%flush(self%file, error)
-      if (allocated(error)) return
-      call self%history%table%flush(self%file, error)
-      if (allocated(error)) return
-      if (self%plan%energy) call self%energy%flush(self%file, error)
-      if (allocated(error)) return
-      call self%events%flush(self%file, error)
-      if (allocated(error)) return
-      call self%file%flush(error)
+      call self%history%table%flush(self%file, other)
+      call keep_first(error, other)
+      if (self%plan%energy) call self%energy%flush(self%file, other)
+      call keep_first(error, other)
+      call self%events%flush(self%file, other)
+      call keep_first(error, other)
    end subroutine flush_results
 
-   !> Flushes, writes what the run has cost, and closes; called also when a run stops early.
+   pure subroutine keep_first(error, other)
+      type(error_type), allocatable, intent(inout) :: error, other
+
+      if (allocated(other) .and. .not. allocated(error)) call move_alloc(other, error)
+   end subroutine keep_first
+
+   !> Lets others see all results so far.
+   subroutine publish_results(self, error)
+      type(result_file_type), intent(inout) :: self
+      type(error_type), allocatable, intent(out) :: error
+
+      call flush_results(self, error)
+      if (.not. allocated(error)) call self%file%publish(error)
+   end subroutine publish_results
+
+   !> Flushes, writes what the run has cost, and closes; called also when a run stops early. What
+   !> stops before its first record leaves no file, and one that was there as it was.
    subroutine close_results(self, scene, error)
       type(result_file_type), intent(inout) :: self
       type(scene_type), intent(inout) :: scene   !! its clock is stopped
       type(error_type), allocatable, intent(out) :: error
+      type(error_type), allocatable :: close_error
       integer :: outer
 
       call enter(scene%system%cost, phase_output, outer, .true.)
-      if (self%file%is_open()) call flush_results(self, error)
+      if (self%file%is_open() .and. self%has_records) call flush_results(self, error)
       call leave(scene%system%cost, outer)
       call stop_clock(scene%system%cost)
-      if (allocated(error) .or. .not. self%file%is_open()) return
-      call write_cost(self%file, scene, error)
-      if (allocated(error)) return
-      call self%file%close(error)
+      if (.not. self%has_records) then
+         call self%file%drop()
+         return
+      end if
+      ! what could not be written does not keep the rest from being closed
+      if (.not. allocated(error)) call write_cost(self%file, scene, error)
+      call self%file%close(close_error)
+      call keep_first(error, close_error)
    end subroutine close_results
 
 end module result_file

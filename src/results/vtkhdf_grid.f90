@@ -6,6 +6,7 @@
 !> left, and must be called before the file is closed. The data are written first and the number
 !> of frames last: whatever happens in between, a reader finds the frames before.
 module vtkhdf_grid
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_is_nan
    use errors, only: error_type, new_error, status_internal, status_numerical
    use hdf5_file, only: hdf5_file_type, series_integer, series_real
    use kinds, only: int64, wp
@@ -20,6 +21,11 @@ module vtkhdf_grid
    integer, parameter :: most_values = 2**16   ! points and cells of the gathered frames
    integer, parameter :: fewest_rows = 256     ! in a chunk of a field
    integer, parameter :: most_rows = 2**14     ! likewise
+
+   !> Lists with an entry a frame that is always the same, and the numbers in a row of them.
+   character(len=21), parameter :: step_lists(5) = [character(len=21) :: 'PartOffsets', &
+         'NumberOfParts', 'PointOffsets', 'CellOffsets', 'ConnectivityIdOffsets']
+   integer, parameter :: step_entries(5) = [0, 1, 0, 0, 0], step_components(5) = [0, 0, 0, 1, 1]
 
    !> One quantity at the points or in the cells, for the gathered frames and the next one.
    type :: field_type
@@ -44,6 +50,8 @@ module vtkhdf_grid
       procedure :: add_cell_field
       procedure :: append_frame
       procedure :: count_frames
+      procedure :: count_fields
+      procedure :: cut_back
       procedure :: flush => flush_frames
       generic :: set_values => set_scalars, set_vectors
       procedure, private :: set_scalars, set_vectors
@@ -55,12 +63,15 @@ contains
    !> triangle and quadrilateral.
    subroutine create(self, file, points, types, connectivity, offsets, error)
       class(vtkhdf_grid_type), intent(out) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       real(wp), contiguous, intent(in) :: points(:, :)       !! (3, n_points)
       integer, contiguous, intent(in) :: types(:)            !! (n_cells)
       integer, contiguous, intent(in) :: connectivity(:)     !! points of the cells, counted from 0
       integer, contiguous, intent(in) :: offsets(:)          !! (n_cells + 1), the first is 0
       type(error_type), allocatable, intent(out) :: error   !! status_file
+      character(len=15), parameter :: counted(3) = [character(len=15) :: 'Points', 'Cells', &
+            'ConnectivityIds']
+      integer :: counts(3), i
 
       self%n_points = size(points, 2)
       self%n_cells = size(types)
@@ -75,10 +86,11 @@ contains
       call file%create_group(root, 'the mesh and its frames, in the VTKHDF format', error)
       if (.not. allocated(error)) call file%set_attribute(root, 'Version', [2, 0], error)
       if (.not. allocated(error)) call file%set_attribute(root, 'Type', 'UnstructuredGrid', error)
-      if (.not. allocated(error)) call write_count(file, 'NumberOfPoints', self%n_points, error)
-      if (.not. allocated(error)) call write_count(file, 'NumberOfCells', self%n_cells, error)
-      if (.not. allocated(error)) call write_count(file, 'NumberOfConnectivityIds', &
-            size(connectivity), error)
+      counts = [self%n_points, self%n_cells, size(connectivity)]
+      do i = 1, size(counts)
+         if (.not. allocated(error)) call file%write_dataset(root//'/NumberOf'//trim(counted(i)), &
+               counts(i:i), 'the number in the name', error)
+      end do
       if (.not. allocated(error)) call file%write_dataset(root//'/Points', points, &
             'undeformed places of the points', error)
       if (.not. allocated(error)) call file%write_dataset(root//'/Connectivity', connectivity, &
@@ -90,47 +102,28 @@ contains
       if (.not. allocated(error)) call create_steps(file, error)
    end subroutine create
 
-   subroutine write_count(file, name, number, error)
-      type(hdf5_file_type), intent(in) :: file
-      character(len=*), intent(in) :: name
-      integer, intent(in) :: number
-      type(error_type), allocatable, intent(out) :: error
-      integer :: list(1)
-
-      list = number
-      call file%write_dataset(root//'/'//name, list, 'the number in the name', error)
-   end subroutine write_count
-
    !> Makes the group with one entry a frame.
    subroutine create_steps(file, error)
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(error_type), allocatable, intent(out) :: error
+      integer :: i
 
       call file%create_group(root//'/Steps', 'the frames', error)
       if (.not. allocated(error)) call file%set_attribute(root//'/Steps', 'NSteps', 0, error)
       if (.not. allocated(error)) call file%create_series(root//'/Steps/Values', series_real, 0, &
             most_frames, 'time', error)
-      if (.not. allocated(error)) call create_step_list(file, 'PartOffsets', 0, error)
-      if (.not. allocated(error)) call create_step_list(file, 'NumberOfParts', 0, error)
-      if (.not. allocated(error)) call create_step_list(file, 'PointOffsets', 0, error)
-      if (.not. allocated(error)) call create_step_list(file, 'CellOffsets', 1, error)
-      if (.not. allocated(error)) call create_step_list(file, 'ConnectivityIdOffsets', 1, error)
+      do i = 1, size(step_lists)
+         if (allocated(error)) return
+         call file%create_series(root//'/Steps/'//trim(step_lists(i)), series_integer, &
+               step_components(i), most_frames, 'the same in each frame: the mesh does not change', &
+               error)
+      end do
    end subroutine create_steps
-
-   subroutine create_step_list(file, name, n_components, error)
-      type(hdf5_file_type), intent(in) :: file
-      character(len=*), intent(in) :: name
-      integer, intent(in) :: n_components
-      type(error_type), allocatable, intent(out) :: error
-
-      call file%create_series(root//'/Steps/'//name, series_integer, n_components, &
-            most_frames, 'the same in each frame: the mesh does not change', error)
-   end subroutine create_step_list
 
    !> Adds a quantity at the points; only before the first frame.
    subroutine add_point_field(self, file, name, n_components, description, field, error, partial)
       class(vtkhdf_grid_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       character(len=*), intent(in) :: name, description
       integer, intent(in) :: n_components   !! 1 scalar, 3 vector, 6 symmetric tensor
       integer, intent(out) :: field         !! its number, for `set_values`
@@ -145,7 +138,7 @@ contains
    !> Adds a quantity of the cells; only before the first frame.
    subroutine add_cell_field(self, file, name, n_components, description, field, error)
       class(vtkhdf_grid_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       character(len=*), intent(in) :: name, description
       integer, intent(in) :: n_components   !! 1 scalar, 3 vector, 6 symmetric tensor
       integer, intent(out) :: field         !! its number, for `set_values`
@@ -180,25 +173,50 @@ contains
    !> Makes the datasets of a field in the file.
    subroutine create_field(self, file, field, description, error)
       type(vtkhdf_grid_type), intent(in) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(field_type), intent(in) :: field
       character(len=*), intent(in) :: description
       type(error_type), allocatable, intent(out) :: error
-      integer :: n_chunks, components
+      integer :: components
 
       if (self%count_frames() > 0) then
          call new_error(error, status_internal, field%data_path//' comes after the first frame')
          return
       end if
-      n_chunks = (field%n + most_rows - 1)/most_rows
       components = size(field%held, 1)
       if (components == 1) components = 0
-      call file%create_series(field%data_path, series_real, components, &
-            max(fewest_rows, (field%n + n_chunks - 1)/max(1, n_chunks)), description, error)
+      call file%create_series(field%data_path, series_real, components, chunk_rows(field), &
+            description, error)
       if (allocated(error)) return
       call file%create_series(field%offset_path, series_integer, 0, most_frames, &
             'where each frame begins in '//field%data_path, error)
    end subroutine create_field
+
+   !> Points or cells that lie together in the file: frames are cut into equal chunks.
+   pure integer function chunk_rows(field)
+      type(field_type), intent(in) :: field
+      integer :: n_chunks
+
+      n_chunks = (field%n + most_rows - 1)/most_rows
+      chunk_rows = max(fewest_rows, (field%n + n_chunks - 1)/max(1, n_chunks))
+   end function chunk_rows
+
+   !> Bytes by which the file grows at most when the gathered frames are written: their data, chunks
+   !> begun, and the tables of chunks.
+   pure function bytes_needed(self) result(bytes)
+      type(vtkhdf_grid_type), intent(in) :: self
+      integer(int64) :: bytes, data
+      integer(int64), parameter :: tables = 8192
+      integer :: i
+
+      bytes = tables*(6 + 2*size(self%fields))
+      do i = 1, size(self%fields)
+         associate (field => self%fields(i))
+            data = 8_int64*size(field%held, 1)*field%n*self%n_held
+            bytes = bytes + data + data/16 + 16_int64*size(field%held, 1)*chunk_rows(field)
+         end associate
+      end do
+   end function bytes_needed
 
    !> No result is infinite, nor NaN but where there is no value.
    subroutine check_finite(self, time, error)
@@ -226,9 +244,10 @@ contains
       logical :: sound
 
       if (partial) then
-         sound = .not. any(abs(values) > huge(1.0_wp))
+         ! to compare a NaN is an invalid operation, to ask for one is not
+         sound = all(ieee_is_finite(values) .or. ieee_is_nan(values))
       else
-         sound = all(abs(values) <= huge(1.0_wp))
+         sound = all(ieee_is_finite(values))
       end if
    end function is_sound
 
@@ -257,7 +276,7 @@ contains
    !> Makes a frame of the fields as they were handed over.
    subroutine append_frame(self, file, time, error)
       class(vtkhdf_grid_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       real(wp), intent(in) :: time   !! or whatever orders the frames, e.g. a frequency
       !> status_file; status_numerical: a value that is not finite
       type(error_type), allocatable, intent(out) :: error
@@ -280,11 +299,13 @@ contains
    !> Writes the gathered frames: data, entries in the lists, at last their number.
    subroutine flush_frames(self, file, error)
       class(vtkhdf_grid_type), intent(inout) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(error_type), allocatable, intent(out) :: error   !! status_file
       integer :: i, last
 
       if (self%n_held == 0) return
+      call file%reserve(bytes_needed(self), error)
+      if (allocated(error)) return
       do i = 1, size(self%fields)
          call append_field(self, file, self%fields(i), error)
          if (allocated(error)) return
@@ -292,8 +313,6 @@ contains
       call append_steps(self, file, error)
       if (allocated(error)) return
       call file%set_attribute(root//'/Steps', 'NSteps', self%count_frames(), error)
-      if (allocated(error)) return
-      call file%flush(error)
       if (allocated(error)) return
       last = min(self%n_held, size(self%times) - 1)
       do i = 1, size(self%fields)
@@ -305,7 +324,7 @@ contains
 
    subroutine append_field(self, file, field, error)
       type(vtkhdf_grid_type), intent(in) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(field_type), intent(in) :: field
       type(error_type), allocatable, intent(out) :: error
       integer(int64) :: begin(self%n_held)
@@ -321,19 +340,16 @@ contains
 
    subroutine append_steps(self, file, error)
       type(vtkhdf_grid_type), intent(in) :: self
-      type(hdf5_file_type), intent(in) :: file
+      type(hdf5_file_type), intent(inout) :: file
       type(error_type), allocatable, intent(out) :: error
-      character(len=*), parameter :: steps = root//'/Steps/'
-      integer, dimension(self%n_held) :: zero, one
+      integer :: entries(self%n_held), i
 
-      zero = 0
-      one = 1
-      call file%append(steps//'PartOffsets', zero, error)
-      if (.not. allocated(error)) call file%append(steps//'NumberOfParts', one, error)
-      if (.not. allocated(error)) call file%append(steps//'PointOffsets', zero, error)
-      if (.not. allocated(error)) call file%append(steps//'CellOffsets', zero, error)
-      if (.not. allocated(error)) call file%append(steps//'ConnectivityIdOffsets', zero, error)
-      if (.not. allocated(error)) call file%append(steps//'Values', self%times(:self%n_held), error)
+      do i = 1, size(step_lists)
+         entries = step_entries(i)
+         call file%append(root//'/Steps/'//trim(step_lists(i)), entries, error)
+         if (allocated(error)) return
+      end do
+      call file%append(root//'/Steps/Values', self%times(:self%n_held), error)
    end subroutine append_steps
 
    !> Copies the frame behind one place in the list to the one behind another.
@@ -354,5 +370,38 @@ contains
 
       count_frames = self%n_written + self%n_held
    end function count_frames
+
+   pure integer function count_fields(self)
+      class(vtkhdf_grid_type), intent(in) :: self
+
+      count_fields = size(self%fields)
+   end function count_fields
+
+   !> Leaves the first frames of a reopened file, to go on behind them.
+   subroutine cut_back(self, file, n_frames, short, error)
+      class(vtkhdf_grid_type), intent(inout) :: self
+      type(hdf5_file_type), intent(inout) :: file
+      integer, intent(in) :: n_frames
+      character(len=:), allocatable, intent(out) :: short   !! what has not so many, if something
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+      integer :: i
+
+      do i = 1, size(self%fields)
+         associate (field => self%fields(i))
+            call file%cut(field%data_path, int(n_frames, int64)*field%n, short, error)
+            if (allocated(error) .or. allocated(short)) return
+            call file%cut(field%offset_path, int(n_frames, int64), short, error)
+         end associate
+         if (allocated(error) .or. allocated(short)) return
+      end do
+      do i = 1, size(step_lists)
+         call file%cut(root//'/Steps/'//trim(step_lists(i)), int(n_frames, int64), short, error)
+         if (allocated(error) .or. allocated(short)) return
+      end do
+      call file%cut(root//'/Steps/Values', int(n_frames, int64), short, error)
+      if (allocated(error) .or. allocated(short)) return
+      call file%set_attribute(root//'/Steps', 'NSteps', n_frames, error)
+      self%n_written = n_frames
+   end subroutine cut_back
 
 end module vtkhdf_grid

@@ -47,7 +47,7 @@ contains
             //nl// &
             '                      [--overwrite | --restart OLD.h5] [--memory SIZE]'//nl// &
             '                      [--time-limit TIME]'//nl// &
-            '       carom check DECK [--define NAME=VALUE]...'//nl// &
+            '       carom check DECK [--define NAME=VALUE]... [--memory SIZE]'//nl// &
             '       carom --version | --help'//nl//nl// &
             '  run      computes the deck; writes OUT.h5, OUT.log and OUT.sta'//nl// &
             '           (default: beside the deck, with its name)'//nl// &
@@ -158,7 +158,7 @@ contains
       end select
    end subroutine read_option
 
-   !> A size in bytes, or with K, M, G or T behind it (powers of 1024).
+   !> A size in bytes, or with K, M, G or T behind it (powers of 1000, as in MB of messages).
    subroutine read_memory(value, bytes, error)
       character(len=*), intent(in) :: value
       real(wp), intent(out) :: bytes
@@ -169,7 +169,7 @@ contains
       power = index('KMGT', upper_case(value(max(1, length):)))
       if (length == 0) power = 0
       if (power > 0) length = length - 1
-      bytes = plain_number(value(:length))*1024.0_wp**power
+      bytes = plain_number(value(:length))*1000.0_wp**power
       if (.not. bytes > 0.0_wp) call usage_error(error, '--memory '''//value &
             //''' is not a size such as 500M or 12G')
    end subroutine read_memory
@@ -220,11 +220,31 @@ contains
          call usage_error(error, 'no deck given')
          return
       end if
-      if (allocated(command%output)) return
+      if (allocated(command%output)) then
+         call check_ending(command%output, error)
+         return
+      end if
       dot = index(command%deck, '.', back=.true.)
       if (dot <= index(command%deck, '/', back=.true.) + 1) dot = len(command%deck) + 1
       command%output = command%deck(:dot - 1)//'.h5'
    end subroutine complete
+
+   !> Results have a name of their own kind: no slip of the pen makes them replace a deck or a log.
+   subroutine check_ending(path, error)
+      character(len=*), intent(in) :: path
+      type(error_type), allocatable, intent(out) :: error
+      character(len=*), parameter :: endings(*) = ['.h5    ', '.hdf5  ', '.hdf   ', '.vtkhdf']
+      character(len=:), allocatable :: name
+      integer :: i
+
+      name = path(index(path, '/', back=.true.) + 1:)
+      do i = 1, size(endings)
+         if (len(name) <= len_trim(endings(i))) cycle
+         if (name(len(name) - len_trim(endings(i)) + 1:) == endings(i)) return
+      end do
+      call usage_error(error, '-o '''//path//''': a file of results ends in .h5, .hdf5, .hdf or ' &
+            //'.vtkhdf')
+   end subroutine check_ending
 
    subroutine usage_error(error, cause)
       type(error_type), allocatable, intent(out) :: error

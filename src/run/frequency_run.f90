@@ -7,7 +7,7 @@ module frequency_run
    use places, only: fail_at
    use eigen_analysis, only: modes_type, find_modes
    use effective_matrix, only: mark_implicit
-   use result_file, only: result_file_type, write_system, flush_results
+   use result_file, only: result_file_type, write_system
    use mode_recorder, only: record_modes
    use command_line, only: version_text
    use run_log, only: log_type, say
@@ -58,8 +58,6 @@ contains
          call record_modes(results, simulation%scene, simulation%contact, simulation%motion, &
                modes, error)
       end associate
-      if (allocated(error)) return
-      call flush_results(results, error)
    end subroutine run_frequency_step
 
    !> The table of modes, effective masses in percent of what can move.

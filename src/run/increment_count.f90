@@ -15,20 +15,26 @@ module increment_count
 contains
 
    !> Increments of a step; a remainder of more than round-off gets one of its own.
-   pure function count_increments(step) result(n)
+   pure function count_increments(step, origin) result(n)
       type(step_type), intent(in) :: step
+      real(wp), intent(in), optional :: origin   !! step time that they are counted from
       integer :: n
+      real(wp) :: length
 
-      n = max(1, ceiling(step%duration/step%dt*(1.0_wp - 1.0e-9_wp)))
+      length = step%duration
+      if (present(origin)) length = step%duration - origin
+      n = max(1, ceiling(length/step%dt*(1.0_wp - 1.0e-9_wp)))
    end function count_increments
 
    !> Length of the last increment: the step's dt unless a remainder is left.
-   pure function last_increment(step, n) result(dt)
+   pure function last_increment(step, n, origin) result(dt)
       type(step_type), intent(in) :: step
       integer, intent(in) :: n
+      real(wp), intent(in), optional :: origin   !! step time that they are counted from
       real(wp) :: dt
 
       dt = step%duration - (n - 1)*step%dt
+      if (present(origin)) dt = (step%duration - origin) - (n - 1)*step%dt
       if (abs(dt - step%dt) <= 1.0e-6_wp*step%dt) dt = step%dt
    end function last_increment
 

@@ -2,6 +2,7 @@
 !> again, and not up and down with every swing of the motion.
 module increment_ladder
    use kinds, only: wp
+   use state_archive, only: archive_type
    implicit none
    private
 
@@ -15,6 +16,8 @@ module increment_ladder
       integer :: n_needed = 2                    !! of them before one is larger
       integer :: n_since = -1                    !! since it was doubled, -1: long ago
       integer :: n_changes = 0
+   contains
+      procedure :: pass_state
    end type ladder_type
 
    !> Twice the increment makes eight times the local error: errors below this part may grow.
@@ -24,6 +27,20 @@ module increment_ladder
    integer, parameter :: proof = 8
 
 contains
+
+   !> All of it.
+   subroutine pass_state(self, archive)
+      class(ladder_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call archive%pass('dt', self%dt)
+      call archive%pass('dt_min', self%dt_min)
+      call archive%pass('dt_max', self%dt_max)
+      call archive%pass('n_easy', self%n_easy)
+      call archive%pass('n_needed', self%n_needed)
+      call archive%pass('n_since', self%n_since)
+      call archive%pass('n_changes', self%n_changes)
+   end subroutine pass_state
 
    !> A ladder through dt.
    pure subroutine start_ladder(self, dt, limits)

@@ -2,6 +2,7 @@
 !> that is not accepted leaves no trace: all that it touches is put back from a checkpoint.
 module increments
    use kinds, only: wp
+   use state_archive, only: archive_type
    use errors, only: error_type, new_error, status_numerical
    use text, only: to_text
    use cost_account, only: enter, leave, phase_contact, phase_other
@@ -23,6 +24,8 @@ module increments
       type(ledger_type) :: ledger
       type(rows_type), allocatable :: rows       !! where they move with the bodies
       integer :: n_events = 0
+   contains
+      procedure :: pass_state => pass_checkpoint
    end type checkpoint_type
 
    !> Automatic choice of static increments.
@@ -31,6 +34,8 @@ module increments
       real(wp) :: dt_min = 0.0_wp, dt_max = 0.0_wp
       integer :: n_easy = 0                      !! increments in a row that went easily
       integer :: n_cut = 0                       !! increments tried in vain
+   contains
+      procedure :: pass_state => pass_control
    end type control_type
 
    real(wp), parameter :: smallest_share = 1.0e-5_wp   !! of the step, default of dt min
@@ -52,6 +57,38 @@ contains
       self%dt_max = step%dt_max
       if (.not. self%dt_max > 0.0_wp) self%dt_max = step%duration
    end subroutine start_control
+
+   !> All of it.
+   subroutine pass_control(self, archive)
+      class(control_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call archive%pass('dt', self%dt)
+      call archive%pass('dt_min', self%dt_min)
+      call archive%pass('dt_max', self%dt_max)
+      call archive%pass('n_easy', self%n_easy)
+      call archive%pass('n_cut', self%n_cut)
+   end subroutine pass_control
+
+   !> All of it.
+   subroutine pass_checkpoint(self, archive, rows)
+      class(checkpoint_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+      type(rows_type), intent(in) :: rows        !! of the scene, for what stays the same
+
+      call archive%enter('motion')
+      call self%motion%pass_state(archive)
+      call archive%leave()
+      call archive%enter('ledger')
+      call self%ledger%pass_state(archive)
+      call archive%leave()
+      call archive%pass('n_events', self%n_events)
+      if (.not. rows%moving) return
+      if (archive%reading) self%rows = rows
+      call archive%enter('rows')
+      call self%rows%pass_state(archive)
+      call archive%leave()
+   end subroutine pass_checkpoint
 
    !> Keeps the state before an increment.
    subroutine keep_state(simulation, checkpoint)

@@ -15,8 +15,8 @@ module memory_estimate
    implicit none
    private
 
-   public :: memory_type, item_length, estimate_memory, add_step_memory, memory_text
-   public :: item_matrices, item_frames, item_rows, item_contact
+   public :: memory_type, item_length, estimate_memory, add_step_memory, memory_text, megabytes
+   public :: item_model, item_matrices, item_state, item_frames, item_rows, item_contact
 
    integer, parameter :: item_length = 24
    integer, parameter :: n_items = 6
@@ -201,13 +201,13 @@ contains
       total = max(self%start_up, sum(self%items))
    end function total
 
-   !> "memory: 120 MB (model 80, matrices 30, ...)".
+   !> "120 MB (model 80, matrices 30, ...)".
    pure function memory_text(self) result(line)
       type(memory_type), intent(in) :: self
       character(len=:), allocatable :: line
       integer :: i
 
-      line = 'memory: '//megabytes(self%total())//' MB ('
+      line = megabytes(self%total())//' MB ('
       do i = 1, n_items
          if (i > 1) line = line//', '
          line = line//trim(names(i))//' '//megabytes(self%items(i))
@@ -215,11 +215,16 @@ contains
       line = line//'; at most '//megabytes(self%start_up)//' at the start)'
    end function memory_text
 
+   !> A number of bytes for the eye.
    pure function megabytes(bytes) result(text)
       real(wp), intent(in) :: bytes
       character(len=:), allocatable :: text
 
-      text = to_text(1.0e-6_wp*bytes, 3)
+      if (bytes < 1.0e9_wp) then
+         text = to_text(1.0e-6_wp*bytes, 3)
+      else
+         text = to_text(nint(min(1.0e-6_wp*bytes, 1.0e9_wp)))
+      end if
    end function megabytes
 
 end module memory_estimate

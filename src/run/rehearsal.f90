@@ -3,13 +3,15 @@
 !> together; the error measured with some foretells that with others.
 module rehearsal
    use kinds, only: wp
-   use errors, only: error_type, new_error, status_numerical
+   use state_archive, only: archive_type
+   use errors, only: error_type, new_error, status_numerical, status_interrupted
    use text, only: to_text, plural
    use mesh, only: scheme_implicit, scheme_explicit
    use steps, only: step_type
    use surfaces, only: method_transformation
    use stability_limit, only: stable_frequency
    use run_log, only: log_type, say
+   use stop_request, only: watch_type, keep_watch, look_for_stop, stop_run
    use scene_setup, only: simulation_type
    use increments, only: checkpoint_type, keep_state, put_back
    use twin_motion, only: twins_type, twin_settings_type, start_twins, take_fine_increment, &
@@ -24,6 +26,8 @@ module rehearsal
       real(wp) :: size = 1.0_wp                  !! of all increments, 1 in the first rehearsal
       real(wp) :: difference = 0.0_wp            !! of both motions, of the largest displacement
       integer :: n = 0                           !! increments
+   contains
+      procedure :: pass_state => pass_trial
    end type trial_type
 
    !> What is asked of a step and how far it has been found out.
@@ -40,6 +44,8 @@ module rehearsal
       real(wp) :: order = 2.0_wp                 !! of the error in the size
       logical :: ready = .false.                 !! the next run is the real one
       integer :: n_rehearsals = 0
+   contains
+      procedure :: pass_state => pass_plan
    end type plan_type
 
    real(wp), parameter :: default_tolerance = 1.0e-3_wp
@@ -65,11 +71,47 @@ module rehearsal
 
 contains
 
+   !> All of it.
+   subroutine pass_trial(self, archive)
+      class(trial_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call archive%pass('size', self%size)
+      call archive%pass('difference', self%difference)
+      call archive%pass('n', self%n)
+   end subroutine pass_trial
+
+   !> All of it.
+   subroutine pass_plan(self, archive)
+      class(plan_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call archive%pass('asked', self%asked)
+      call archive%pass('given', self%given)
+      call archive%pass('most', self%most)
+      call archive%pass('dt', self%dt)
+      call archive%pass('local_tolerance', self%local_tolerance)
+      call archive%pass('size', self%size)
+      call archive%pass('order', self%order)
+      call archive%pass('ready', self%ready)
+      call archive%pass('n_rehearsals', self%n_rehearsals)
+      call archive%enter('settings')
+      call self%settings%pass_state(archive)
+      call archive%leave()
+      call archive%enter('last')
+      call self%last%pass_state(archive)
+      call archive%leave()
+      call archive%enter('base')
+      call self%base%pass_state(archive)
+      call archive%leave()
+   end subroutine pass_plan
+
    !> Chooses the increments of a step; the simulation is then where it was.
-   subroutine rehearse(simulation, i_step, log, plan, error)
+   subroutine rehearse(simulation, i_step, log, watch, plan, error)
       type(simulation_type), intent(inout) :: simulation
       integer, intent(in) :: i_step
       type(log_type), intent(in) :: log
+      type(watch_type), intent(inout) :: watch
       type(plan_type), intent(out) :: plan
       type(error_type), allocatable, intent(out) :: error
       type(checkpoint_type) :: start
@@ -79,8 +121,11 @@ contains
       call keep_state(simulation, start)
       do while (.not. plan%ready)
          trial%size = plan%size
-         call try_out(simulation, plan, trial, error)
-         if (allocated(error)) return
+         call try_out(simulation, i_step, watch, plan, trial, error)
+         if (allocated(error)) then
+            if (error%status == status_interrupted) call put_back(simulation, start)
+            return
+         end if
          call put_back(simulation, start)
          call say(log, '  rehearsal: '//plural(trial%n, 'increment')//', estimated error ' &
                //to_text(estimated_error(trial, plan%base, plan%order), 3))
@@ -136,13 +181,18 @@ contains
    end subroutine set_sizes
 
    !> The step with one size.
-   subroutine try_out(simulation, plan, trial, error)
+   subroutine try_out(simulation, i_step, watch, plan, trial, error)
       type(simulation_type), intent(inout) :: simulation
+      integer, intent(in) :: i_step
+      type(watch_type), intent(inout) :: watch
       type(plan_type), intent(inout) :: plan
       type(trial_type), intent(inout) :: trial
       type(error_type), allocatable, intent(out) :: error
       type(twins_type) :: twins
+      real(wp) :: t
+      logical :: asked
 
+      t = simulation%motion%motion%t
       call set_sizes(plan)
       call start_twins(twins, simulation, plan%settings)
       do while (.not. step_is_over(twins))
@@ -150,6 +200,12 @@ contains
          if (allocated(error)) return
          simulation%scene%n_events = 0
          call compare_twins(twins, simulation)
+         call keep_watch(watch)
+         call look_for_stop(watch, asked)
+         if (asked) then
+            call stop_run(watch, 'in a rehearsal of step '//to_text(i_step), t, error)
+            return
+         end if
          if (twins%n <= plan%most) cycle
          call refuse(plan, real(twins%n, wp), error)
          return

@@ -2,16 +2,19 @@
 module run_log
    use, intrinsic :: iso_fortran_env, only: output_unit
    use kinds, only: wp
-   use errors, only: error_type, new_error, status_file
+   use errors, only: error_type
+   use file_calls, only: look_at, look_at_open, is_same
+   use text_file, only: text_file_type, open_text, write_line, check_text, close_text
    implicit none
    private
 
-   public :: log_type, open_log, close_log, say, note, write_status, has_line
+   public :: log_type, open_log, check_log, close_log, say, note, write_status, has_line
 
    !> Where lines go. Without files (a mere check), to the terminal alone.
    type :: log_type
-      integer :: log_unit = -1
-      integer :: status_unit = -1
+      type(text_file_type) :: lines              !! STEM.log
+      type(text_file_type) :: status             !! STEM.sta
+      logical :: has_files = .false.
       logical :: terminal = .true.          !! copies of what is said
       logical :: has_held = .false.         !! an increment whose status line is not written
       integer :: held_counts(4) = 0
@@ -32,35 +35,39 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       self%terminal = .not. quiet
-      call open_text(stem//'.log', self%log_unit, error)
+      ! 'carom run deck.inp > deck.log': the log says all that
+      if (is_same(look_at_open(1), look_at(stem//'.log'))) self%terminal = .false.
+      call open_text(self%lines, stem//'.log', .false., error)
       if (allocated(error)) return
-      call open_text(stem//'.sta', self%status_unit, error)
+      call open_text(self%status, stem//'.sta', .false., error)
       if (allocated(error)) return
-      write (self%status_unit, '(a)') '# step  increment    step time      total time     '// &
-            'increment      iterations  events'
-      write (self%status_unit, '(a)') '# a line an increment; beyond 10000 of a step one '// &
-            'in 10, beyond 100000 one in 100, ..., with all iterations and events since the last'
+      self%has_files = .true.
+      call write_line(self%status, '# step  increment    step time      total time     '// &
+            'increment      iterations  events')
+      call write_line(self%status, '# a line an increment; beyond 10000 of a step one '// &
+            'in 10, beyond 100000 one in 100, ..., with all iterations and events since the last')
    end subroutine open_log
 
-   subroutine open_text(path, unit, error)
-      character(len=*), intent(in) :: path
-      integer, intent(out) :: unit
-      type(error_type), allocatable, intent(out) :: error
-      character(len=200) :: message
-      integer :: status
+   !> Brings all lines to the files; an error if one of them cannot be written.
+   subroutine check_log(self, error)
+      type(log_type), intent(in) :: self
+      type(error_type), allocatable, intent(out) :: error   !! status_file
 
-      open (newunit=unit, file=path, status='replace', action='write', iostat=status, iomsg=message)
-      if (status /= 0) call new_error(error, status_file, 'cannot write '//path//': ' &
-            //trim(message))
-   end subroutine open_text
+      call check_text(self%lines, error)
+      if (.not. allocated(error)) call check_text(self%status, error)
+   end subroutine check_log
 
    !> One line (or several, parted by new lines) for the log and the terminal.
    subroutine say(self, line)
       type(log_type), intent(in) :: self
       character(len=*), intent(in) :: line
 
-      if (self%log_unit /= -1) write (self%log_unit, '(a)') line
-      if (self%terminal) write (output_unit, '(a)') line
+      integer :: status
+
+      call write_line(self%lines, line)
+      if (.not. self%terminal) return
+      write (output_unit, '(a)', iostat=status) line
+      if (status /= 0) return   ! a terminal that is gone is no reason to stop
    end subroutine say
 
    !> One line for the log alone.
@@ -68,7 +75,7 @@ contains
       type(log_type), intent(in) :: self
       character(len=*), intent(in) :: line
 
-      if (self%log_unit /= -1) write (self%log_unit, '(a)') line
+      call write_line(self%lines, line)
    end subroutine note
 
    !> Whether an increment of a step has a line in the status file.
@@ -93,7 +100,7 @@ contains
       integer, intent(in) :: counts(4)           !! step, increment, iterations, events
       real(wp), intent(in) :: times(3)           !! step time, total time, increment
 
-      if (self%status_unit == -1) return
+      if (.not. self%has_files) return
       if (self%has_held .and. counts(1) > self%held_counts(1)) call write_held(self)
       self%held_counts(1:2) = counts(1:2)
       self%held_counts(3:4) = self%held_counts(3:4) + counts(3:4)
@@ -104,22 +111,25 @@ contains
 
    subroutine write_held(self)
       type(log_type), intent(inout) :: self
+      character(len=82) :: line
 
-      write (self%status_unit, '(i6,i11,3es15.6,i12,i8)') self%held_counts(1:2), &
-            self%held_times, self%held_counts(3:4)
+      write (line, '(i6,i11,3es15.6,i12,i8)') self%held_counts(1:2), self%held_times, &
+            self%held_counts(3:4)
+      call write_line(self%status, line)
       self%held_counts(3:4) = 0
       self%has_held = .false.
    end subroutine write_held
 
-   !> Closes the files.
-   subroutine close_log(self)
+   !> Closes the files; an error if one of them could not be written to the end.
+   subroutine close_log(self, error)
       type(log_type), intent(inout) :: self
+      type(error_type), allocatable, intent(out) :: error   !! status_file
 
       if (self%has_held) call write_held(self)
-      if (self%log_unit /= -1) close (self%log_unit)
-      if (self%status_unit /= -1) close (self%status_unit)
-      self%log_unit = -1
-      self%status_unit = -1
+      call check_log(self, error)
+      call close_text(self%lines)
+      call close_text(self%status)
+      self%has_files = .false.
    end subroutine close_log
 
 end module run_log

@@ -1,25 +1,36 @@
 !> The run: deck, scene, files, the steps one after the other, and how it ended.
 module simulation
-   use errors, only: error_type
-   use clock, only: seconds_now
+   use errors, only: error_type, status_file, status_interrupted
+   use text, only: to_text
+   use stop_signals, only: catch_signals
+   use file_calls, only: ignore_signals
+   use part_file, only: part_file_type, check_output, discard
    use cost_account, only: start_clock, enter, leave, phase_read, phase_build, phase_output
    use steps, only: procedure_frequency
-   use deck_reader, only: read_deck
+   use hdf5_file, only: hdf5_file_type
    use result_file, only: open_results, close_results
    use command_line, only: command_type
+   use output_files, only: claim_output, log_stem
+   use publishing, only: start_publishing
    use run_log, only: log_type, open_log, close_log, say
+   use stop_request, only: start_watch, start_looking, look_for_stop, stop_run, remove_stop_files
    use progress, only: start_progress, end_progress
    use scene_setup, only: simulation_type, initial_motion
    use frequency_run, only: run_frequency_step
    use scene_advice, only: advice_list_type, advise_end
    use feature_report, only: report_advice
-   use deck_check, only: prepare, report_preview
+   use deck_check, only: read_model, prepare, report_preview
    use run_report, only: report_model, report_notes, report_summary
-   use time_loop, only: output_type, run_step
+   use course, only: course_type, begin_course
+   use run_output, only: output_type
+   use time_loop, only: run_step
    implicit none
    private
 
    public :: run_deck
+
+   !> Signals of Linux: a write that fails says so itself.
+   integer, parameter :: broken_pipe = 13, file_too_large = 25
 
 contains
 
@@ -29,15 +40,21 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(simulation_type) :: simulation
       type(output_type) :: output
+      type(part_file_type) :: place
       type(advice_list_type) :: lessons
       type(error_type), allocatable :: close_error
       integer :: outer
 
       associate (cost => simulation%scene%system%cost)
          call start_clock(cost)
-         output%last_flush = seconds_now()
+         call catch_signals()
+         call ignore_signals([broken_pipe, file_too_large])
+         call start_publishing(output%publishing)
+         call start_watch(output%watch, command%deck, command%time_limit, output%publishing%last)
+         call check_output(command%output, command%overwrite, error)
+         if (allocated(error)) return
          call enter(cost, phase_read, outer)
-         call read_deck(simulation%model, command%deck, command%definitions, error)
+         call read_model(simulation%model, command, output%preview, error)
          call leave(cost, outer)
          if (allocated(error)) return
          call enter(cost, phase_build, outer)
@@ -48,18 +65,43 @@ contains
          call leave(cost, outer)
       end associate
       if (allocated(error)) return
-      call open_log(output%log, stem_of(command%output), command%quiet, error)
+      call claim_output(place, command, simulation%model%source, error)
       if (allocated(error)) return
-      call run_steps(simulation, command, output, error)
+      call open_log(output%log, log_stem(command%output), command%quiet, error)
+      if (allocated(error)) then
+         call discard(place)
+         return
+      end if
+      call run_steps(simulation, command, place, output, error)
+      call remove_stop_files(output%watch)
       call end_progress(output%progress)
       call close_results(output%results, simulation%scene, close_error)
-      if (.not. allocated(error) .and. allocated(close_error)) call move_alloc(close_error, error)
+      call merge_errors(error, close_error, output%results%file)
       call report_summary(simulation, output%log)
       if (.not. allocated(error)) call advise_end(lessons, simulation)
       call report_advice(lessons, output%log)
       call report_end(output%log, error)
-      call close_log(output%log)
+      call close_log(output%log, close_error)
+      if (.not. allocated(error) .and. allocated(close_error)) call move_alloc(close_error, error)
+      call simulation%scene%system%matrices%release()
    end subroutine run_deck
+
+   !> What stopped the run, and what became of its results. A file that could not be written is told
+   !> in the words of its closing, which knows how that ended.
+   subroutine merge_errors(error, close_error, file)
+      type(error_type), allocatable, intent(inout) :: error, close_error
+      type(hdf5_file_type), intent(in) :: file   !! of the results, closed
+      character(len=:), allocatable :: remark
+      logical :: superseded
+
+      superseded = .not. allocated(error)
+      if (.not. superseded) superseded = error%status == status_interrupted .or. &
+            (error%status == status_file .and. file%saved)
+      if (superseded .and. allocated(close_error)) call move_alloc(close_error, error)
+      remark = file%remark()
+      if (.not. allocated(error) .or. len(remark) == 0) return
+      error%message = error%message//new_line('a')//'  results: '//remark
+   end subroutine merge_errors
 
    !> The last line of the log: how the run ended; what a message says beyond its first line, as the
    !> cure, goes before.
@@ -86,41 +128,52 @@ contains
       call initial_motion(simulation, error)
    end subroutine rebuild
 
-   !> The path without its ending.
-   pure function stem_of(path) result(stem)
-      character(len=*), intent(in) :: path
-      character(len=:), allocatable :: stem
-      integer :: dot
-
-      dot = index(path, '.', back=.true.)
-      if (dot <= index(path, '/', back=.true.) + 1) dot = len(path) + 1
-      stem = path(:dot - 1)
-   end function stem_of
-
-   subroutine run_steps(simulation, command, output, error)
+   subroutine run_steps(simulation, command, place, output, error)
       type(simulation_type), intent(inout) :: simulation
       type(command_type), intent(in) :: command
+      type(part_file_type), intent(in) :: place  !! of the results
       type(output_type), intent(inout) :: output
       type(error_type), allocatable, intent(out) :: error
+      type(course_type) :: course
       integer :: i, outer
 
       call report_model(simulation, output%log)
       call report_preview(output%preview, simulation, .false., output%log)
       call report_notes(simulation, output%log)
       call enter(simulation%scene%system%cost, phase_output, outer, .true.)
-      call open_results(output%results, command%output, simulation%model, simulation%scene, &
-            simulation%contact, error)
+      call open_results(output%results, place, command%output, simulation%model, &
+            simulation%scene, simulation%contact, error)
       call leave(simulation%scene%system%cost, outer)
       if (allocated(error)) return
       call start_progress(output%progress, command%quiet)
-      do i = 1, size(simulation%model%steps)
+      do i = max(1, course%step), size(simulation%model%steps)
+         if (i > course%step) call begin_course(course, i, simulation%motion%motion%t)
          if (simulation%model%steps(i)%procedure == procedure_frequency) then
-            call run_frequency_step(simulation, i, output%results, output%log, error)
+            call do_frequency_step(simulation, course, output, error)
          else
-            call run_step(simulation, i, output, error)
+            call run_step(simulation, course, output, error)
          end if
          if (allocated(error)) return
       end do
    end subroutine run_steps
+
+   !> A frequency step, which is finished once it has begun.
+   subroutine do_frequency_step(simulation, course, output, error)
+      type(simulation_type), intent(inout) :: simulation
+      type(course_type), intent(inout) :: course
+      type(output_type), intent(inout) :: output
+      type(error_type), allocatable, intent(out) :: error
+      logical :: asked
+
+      if (course%entered) return
+      call run_frequency_step(simulation, course%step, output%results, output%log, error)
+      if (allocated(error)) return
+      course%entered = .true.
+      if (course%step == size(simulation%model%steps)) return
+      call start_looking(output%watch)
+      call look_for_stop(output%watch, asked)
+      if (asked) call stop_run(output%watch, 'after step '//to_text(course%step), &
+            simulation%motion%motion%t, error)
+   end subroutine do_frequency_step
 
 end module simulation

@@ -3,7 +3,9 @@
 !> step, impacts and all (Richardson).
 module twin_motion
    use kinds, only: wp
+   use state_archive, only: archive_type
    use errors, only: error_type, status_numerical
+   use constraint_rows, only: rows_type
    use scene_setup, only: simulation_type
    use increments, only: checkpoint_type, keep_state, put_back, take_increment, &
          add_smallest
@@ -22,6 +24,8 @@ module twin_motion
       real(wp) :: limits(2) = 0.0_wp             !! smallest and largest fine increment
       real(wp) :: local_tolerance = 0.0_wp       !! of a coarse increment's error, relative
       real(wp) :: scale = 0.0_wp                 !! largest displacement known so far
+   contains
+      procedure :: pass_state => pass_settings
    end type twin_settings_type
 
    !> Both motions; the simulation's own is the fine one between increments.
@@ -40,12 +44,54 @@ module twin_motion
       real(wp) :: difference = 0.0_wp            !! largest between the motions
       integer :: n = 0                           !! fine increments
       integer :: n_cut = 0                       !! coarse ones tried in vain
+   contains
+      procedure :: pass_state => pass_twins
    end type twins_type
 
    !> What is left of a step below this part of it is round-off.
    real(wp), parameter :: round_off = 1.0e-12_wp
 
 contains
+
+   !> All of it.
+   subroutine pass_settings(self, archive)
+      class(twin_settings_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call archive%pass('duration', self%duration)
+      call archive%pass('dt', self%dt)
+      call archive%pass('local_tolerance', self%local_tolerance)
+      call archive%pass('scale', self%scale)
+      call archive%pass_fixed('limits', self%limits)
+   end subroutine pass_settings
+
+   !> All of it.
+   subroutine pass_twins(self, archive, rows)
+      class(twins_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+      type(rows_type), intent(in) :: rows        !! of the scene
+
+      call archive%enter('settings')
+      call self%settings%pass_state(archive)
+      call archive%leave()
+      call archive%enter('ladder')
+      call self%ladder%pass_state(archive)
+      call archive%leave()
+      call archive%enter('coarse')
+      call self%coarse%pass_state(archive, rows)
+      call archive%leave()
+      call archive%pass('breaks', self%breaks)
+      call archive%pass('next_break', self%next_break)
+      call archive%pass('t_start', self%t_start)
+      call archive%pass('step_time', self%step_time)
+      call archive%pass('coarse_time', self%coarse_time)
+      call archive%pass('dt', self%dt)
+      call archive%pass('proven', self%proven)
+      call archive%pass('scale', self%scale)
+      call archive%pass('difference', self%difference)
+      call archive%pass('n', self%n)
+      call archive%pass('n_cut', self%n_cut)
+   end subroutine pass_twins
 
    !> Both motions begin where the simulation is.
    subroutine start_twins(self, simulation, settings)

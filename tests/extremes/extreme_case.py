@@ -119,7 +119,7 @@ class ExtremeRun(Run):
         path.write_text(case.text())
         words = [program.path, case.command, str(path)]
         if case.command == 'run':
-            words += ['-o', str(result), '--quiet']
+            words += ['-o', str(result), '--quiet', '--overwrite']
         began = time.monotonic()
         status, text = self._execute(words + case.options, case, folder)
         self.elapsed = time.monotonic() - began

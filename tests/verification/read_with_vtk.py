@@ -68,7 +68,10 @@ def check(path):
     times = reader.GetOutputInformation(0).Get(key) or ()
     with h5py.File(path, "r") as file:
         group = file["VTKHDF"]
-        if not np.array_equal(times, group["Steps/Values"][: group["Steps"].attrs["NSteps"]]):
+        expected = group["Steps/Values"][: group["Steps"].attrs["NSteps"]]
+        if len(expected) == 1 and not times:
+            times = expected        # a single frame is to VTK one without time
+        if not np.array_equal(times, expected):
             complaints.append(f"VTK finds the times {times}")
         for step in range(len(times)):
             reader.SetStep(step)

@@ -53,7 +53,7 @@ print(usage.ru_maxrss, status)
 
 def taken(deck, folder):
     """The largest resident size of a run in bytes, and how it ended."""
-    words = [sys.argv[1], 'run', deck, '-o', folder / 'out.h5', '--quiet']
+    words = [sys.argv[1], 'run', deck, '-o', folder / 'out.h5', '--quiet', '--overwrite']
     text = subprocess.run([sys.executable, '-c', SMALL_PARENT, *words], capture_output=True,
                           text=True, check=True, env=ENVIRONMENT).stdout
     kilobytes, status = text.split()

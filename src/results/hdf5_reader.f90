@@ -2,8 +2,10 @@
 module hdf5_reader
    use, intrinsic :: iso_c_binding, only: c_char, c_loc
    use errors, only: error_type, new_error, status_file
-   use hdf5_calls, only: close_file, close_storage, get_dataset, get_dims, hid_t, hsize_t, &
-         integer_storage, long_storage, open_file, real_storage, text_storage
+   use hdf5_calls, only: close_storage, get_dataset, get_dims, hid_t, hsize_t, integer_storage, &
+         long_storage, real_storage, text_storage
+   use hdf5_opening, only: close_file, open_file
+   use hdf5_changes, only: has_object, text_length
    use kinds, only: int64, wp
    implicit none
    private
@@ -18,7 +20,9 @@ module hdf5_reader
    contains
       procedure :: open => open_for_reading
       procedure :: close => close_for_good
+      procedure :: holds
       procedure :: get_shape
+      procedure :: read_text
       procedure :: read_texts
       generic :: read_dataset => read_reals, read_integers, read_longs
       procedure, private :: read_reals, read_integers, read_longs
@@ -39,7 +43,7 @@ contains
       inquire (file=path, exist=exists)
       if (exists) then
          call new_error(error, status_file, "cannot read '"//path// &
-               "': not an HDF5 file, no permission, or still being written")
+               "': no HDF5 file, cut short or damaged, or no permission")
       else
          call new_error(error, status_file, "cannot read '"//path//"': no such file")
       end if
@@ -54,6 +58,14 @@ contains
       call close_file(self%id, failed)
       self%id = -1
    end subroutine close_for_good
+
+   !> Whether there is a group or dataset of this path.
+   logical function holds(self, path)
+      class(hdf5_reader_type), intent(in) :: self
+      character(len=*), intent(in) :: path
+
+      holds = has_object(self%id, path)
+   end function holds
 
    !> The shape of a dataset as Fortran sees it (rows last); no dimension for a scalar.
    subroutine get_shape(self, path, extents, error)
@@ -120,6 +132,27 @@ contains
       call get_dataset(self%id, path, long_storage(), c_loc(values), failed)
       if (failed) call read_error(self, path, error)
    end subroutine read_longs
+
+   !> The one text of a scalar dataset, whole.
+   subroutine read_text(self, path, text, error)
+      class(hdf5_reader_type), intent(in) :: self
+      character(len=*), intent(in) :: path
+      character(len=:), allocatable, intent(out) :: text
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+      character(kind=c_char), allocatable, target :: bytes(:)
+      integer :: length, i
+      logical :: failed
+
+      length = text_length(self%id, path)
+      failed = length == 0
+      allocate (bytes(length))
+      if (.not. failed) call get_texts(self%id, path, length, bytes, failed)
+      allocate (character(len=length) :: text)
+      do i = 1, length
+         text(i:i) = bytes(i)
+      end do
+      if (failed) call read_error(self, path, error)
+   end subroutine read_text
 
    !> All texts of a list, or the one of a scalar, cut or padded to the given length.
    subroutine read_texts(self, path, length, values, error)

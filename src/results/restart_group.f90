@@ -1,0 +1,272 @@
+!> /restart of a result file: the state that a run can go on from, and what it was read from.
+!>
+!> Each entry of the archive is a dataset, written anew in its place while its size stays. `entries`
+!> lists them and `checks` has a check sum of each: what is damaged is not taken for a state.
+module restart_group
+   use kinds, only: wp, int64
+   use errors, only: error_type, new_error, status_file
+   use text, only: to_text
+   use places, only: source_type
+   use state_archive, only: archive_type, entry_type
+   use hdf5_file, only: hdf5_file_type
+   use hdf5_reader, only: hdf5_reader_type
+   implicit none
+   private
+
+   public :: restart_group_type, new_restart_group, write_state, write_deck_names, remove_state
+   public :: read_state
+
+   !> To be raised when entries change their meaning.
+   integer, parameter :: format_version = 1
+   integer, parameter :: name_length = 160
+   character(len=*), parameter :: root = '/restart'
+   !> What an entry holds stands before its name in the list.
+   character(len=*), parameter :: mark_real = 'real ', mark_integer = 'integer '
+   character(len=*), parameter :: nl = new_line('a')
+
+   !> What is in the group, as far as this run has written it.
+   type :: restart_group_type
+      private
+      character(len=name_length), allocatable :: files(:)         ! of the deck, in their order
+      integer, allocatable :: n_lines(:)                          ! of them
+      character(len=name_length), allocatable :: definitions(:)   ! NAME=VALUE of the command line
+      character(len=name_length), allocatable :: entries(:)
+   end type restart_group_type
+
+contains
+
+   !> What is to be said of the deck.
+   subroutine new_restart_group(self, source, definitions)
+      type(restart_group_type), intent(out) :: self
+      type(source_type), intent(in) :: source
+      character(len=*), intent(in) :: definitions(:)   !! NAME=VALUE
+      integer :: i
+
+      allocate (self%files(source%n_files), self%n_lines(source%n_files))
+      do i = 1, source%n_files
+         self%files(i) = source%files(i)%name
+         self%n_lines(i) = source%files(i)%n_lines
+      end do
+      self%definitions = definitions
+   end subroutine new_restart_group
+
+   !> How the text in /model/deck is made up, and what has replaced parameters in it.
+   subroutine write_deck_names(self, file, error)
+      type(restart_group_type), intent(in) :: self
+      type(hdf5_file_type), intent(inout) :: file
+      type(error_type), allocatable, intent(out) :: error
+
+      call file%remove(root//'/deck', error)
+      if (allocated(error)) return
+      call file%write_dataset(root//'/deck/files', self%files, &
+            'the deck and what it includes, in the order of /model/deck', error)
+      if (allocated(error)) return
+      call file%write_dataset(root//'/deck/lines', self%n_lines, 'lines of each file', error)
+      if (allocated(error)) return
+      call file%write_dataset(root//'/deck/definitions', self%definitions, &
+            'parameters replaced by --define', error)
+   end subroutine write_deck_names
+
+   !> Writes the archive in the place of the one before.
+   subroutine write_state(self, file, archive, error)
+      type(restart_group_type), intent(inout) :: self
+      type(hdf5_file_type), intent(inout) :: file
+      type(archive_type), intent(in) :: archive
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+      character(len=name_length) :: entries(archive%n)
+      integer(int64) :: checks(archive%n)
+      integer :: i
+
+      if (.not. allocated(self%entries)) call begin_group(self, file, error)
+      if (allocated(error)) return
+      do i = 1, archive%n
+         call write_entry(file, archive%entries(i), error)
+         if (allocated(error)) return
+         entries(i) = marked_name(archive%entries(i))
+         checks(i) = check_sum(archive%entries(i))
+      end do
+      call file%overwrite(root//'/checks', checks, 'check sums of the entries', error)
+      if (allocated(error)) return
+      call list_entries(self, file, entries, error)
+   end subroutine write_state
+
+   !> An empty group; what an earlier run has left there goes.
+   subroutine begin_group(self, file, error)
+      type(restart_group_type), intent(inout) :: self
+      type(hdf5_file_type), intent(inout) :: file
+      type(error_type), allocatable, intent(out) :: error
+
+      call remove_state(file, error)
+      if (allocated(error)) return
+      call file%create_group(root, 'the state that a run can go on from with --restart', error)
+      if (allocated(error)) return
+      call file%write_dataset(root//'/format', [format_version], &
+            'version of the meaning of the entries', error)
+      if (allocated(error)) return
+      call write_deck_names(self, file, error)
+      allocate (self%entries(0))
+   end subroutine begin_group
+
+   subroutine write_entry(file, entry, error)
+      type(hdf5_file_type), intent(inout) :: file
+      type(entry_type), intent(in) :: entry
+      type(error_type), allocatable, intent(out) :: error
+      character(len=*), parameter :: meaning = 'part of the state: '
+
+      if (allocated(entry%reals)) then
+         call file%overwrite(root//'/'//entry%name, entry%reals, meaning//entry%name, error)
+      else
+         call file%overwrite(root//'/'//entry%name, entry%integers, meaning//entry%name, error)
+      end if
+   end subroutine write_entry
+
+   !> The list of entries, where it is another than before; entries that are none any more go.
+   subroutine list_entries(self, file, entries, error)
+      type(restart_group_type), intent(inout) :: self
+      type(hdf5_file_type), intent(inout) :: file
+      character(len=*), intent(in) :: entries(:)
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      if (size(entries) == size(self%entries)) then
+         if (all(entries == self%entries)) return
+      end if
+      do i = 1, size(self%entries)
+         if (any(entries == self%entries(i))) cycle
+         call file%remove(root//'/'//plain_name(self%entries(i)), error)
+         if (allocated(error)) return
+      end do
+      call file%remove(root//'/entries', error)
+      if (allocated(error)) return
+      call file%write_dataset(root//'/entries', entries, 'names of all entries, with their kinds', &
+            error)
+      self%entries = entries
+   end subroutine list_entries
+
+   !> Takes the group away: there is nothing to go on from any more.
+   subroutine remove_state(file, error)
+      type(hdf5_file_type), intent(inout) :: file
+      type(error_type), allocatable, intent(out) :: error
+
+      call file%remove(root, error)
+   end subroutine remove_state
+
+   !> The state in a result file.
+   subroutine read_state(reader, path, archive, error)
+      type(hdf5_reader_type), intent(in) :: reader   !! open
+      character(len=*), intent(in) :: path           !! of the file, for messages
+      type(archive_type), intent(out) :: archive
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+      character(len=name_length), allocatable :: entries(:)
+      integer(int64), allocatable :: checks(:)
+      logical :: sound
+      integer :: i
+
+      call check_group(reader, path, error)
+      if (allocated(error)) return
+      call reader%read_texts(root//'/entries', name_length, entries, error)
+      if (.not. allocated(error)) call reader%read_dataset(root//'/checks', checks, error)
+      sound = .not. allocated(error)
+      if (sound) sound = size(checks) == size(entries)
+      if (sound) then
+         do i = 1, size(entries)
+            call read_entry(reader, entries(i), checks(i), archive, sound)
+            if (.not. sound) exit
+         end do
+      end if
+      if (allocated(error)) deallocate (error)
+      if (.not. sound) call new_error(error, status_file, 'the state in '''//path//''' is damaged' &
+            //nl//'  cure: go on from a copy of the file, or run the deck from its start')
+   end subroutine read_state
+
+   !> That there is a state, of the format written here.
+   subroutine check_group(reader, path, error)
+      type(hdf5_reader_type), intent(in) :: reader
+      character(len=*), intent(in) :: path
+      type(error_type), allocatable, intent(out) :: error
+      integer, allocatable :: version(:)
+      logical :: is_result
+
+      is_result = reader%holds('/VTKHDF')
+      if (is_result) is_result = reader%holds('/model/deck')
+      if (.not. is_result) then
+         call new_error(error, status_file, ''''//path//''' is no result file of carom'//nl &
+               //'  cure: name the .h5 file of an earlier run')
+         return
+      else if (.not. reader%holds(root)) then
+         call new_error(error, status_file, ''''//path//''' holds no state to go on from: its ' &
+               //'run came to its end without *RESTART, or had kept none yet'//nl &
+               //'  cure: run the deck from its start, with *RESTART, WRITE in its steps')
+         return
+      end if
+      call reader%read_dataset(root//'/format', version, error)
+      if (allocated(error)) return
+      if (size(version) == 1) then
+         if (version(1) == format_version) return
+      end if
+      call new_error(error, status_file, 'the state in '''//path//''' has another format than ' &
+            //'this program writes ('//to_text(format_version)//')'//nl &
+            //'  cure: go on with the version of carom that wrote it (attribute of /model)')
+   end subroutine check_group
+
+   !> Appends an entry to the archive if it is what was written.
+   subroutine read_entry(reader, marked, check, archive, sound)
+      type(hdf5_reader_type), intent(in) :: reader
+      character(len=*), intent(in) :: marked     !! its name, with its kind
+      integer(int64), intent(in) :: check
+      type(archive_type), intent(inout) :: archive
+      logical, intent(out) :: sound
+      type(error_type), allocatable :: error
+      real(wp), allocatable :: reals(:)
+      integer(int64), allocatable :: integers(:)
+
+      if (index(marked, mark_real) == 1) then
+         call reader%read_dataset(root//'/'//plain_name(marked), reals, error)
+         if (.not. allocated(error)) call archive%add_reals(plain_name(marked), reals)
+      else
+         call reader%read_dataset(root//'/'//plain_name(marked), integers, error)
+         if (.not. allocated(error)) call archive%add_integers(plain_name(marked), integers)
+      end if
+      sound = .not. allocated(error)
+      if (sound) sound = check_sum(archive%entries(archive%n)) == check
+   end subroutine read_entry
+
+   pure function marked_name(entry) result(name)
+      type(entry_type), intent(in) :: entry
+      character(len=:), allocatable :: name
+
+      if (allocated(entry%reals)) then
+         name = mark_real//entry%name
+      else
+         name = mark_integer//entry%name
+      end if
+   end function marked_name
+
+   pure function plain_name(marked) result(name)
+      character(len=*), intent(in) :: marked
+      character(len=:), allocatable :: name
+
+      name = trim(marked(index(marked, ' ') + 1:))
+   end function plain_name
+
+   !> All bits of an entry folded into 64, turned from one number to the next.
+   pure function check_sum(entry) result(sum)
+      type(entry_type), intent(in) :: entry
+      integer(int64) :: sum
+      integer, parameter :: turn = 7
+      integer :: i
+
+      if (allocated(entry%reals)) then
+         sum = size(entry%reals)
+         do i = 1, size(entry%reals)
+            sum = ieor(ishftc(sum, turn), transfer(entry%reals(i), sum))
+         end do
+      else
+         sum = size(entry%integers)
+         do i = 1, size(entry%integers)
+            sum = ieor(ishftc(sum, turn), entry%integers(i))
+         end do
+      end if
+   end function check_sum
+
+end module restart_group
