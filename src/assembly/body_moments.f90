@@ -5,6 +5,7 @@
 !> positive factors keep the matrix positive definite.
 module body_moments
    use kinds, only: wp
+   use memory_shortage, only: check_allocation
    use element_groups, only: group_type, group_mass
    implicit none
    private
@@ -73,7 +74,7 @@ contains
       type(moments_type), intent(out) :: moments
       real(wp) :: low(3), high(3), along(3), half
       real(wp), allocatable :: own(:, :), now(:, :), p(:, :)
-      integer :: i, n
+      integer :: i, n, status
 
       low = huge(low)
       high = -low
@@ -86,11 +87,13 @@ contains
       half = maxval(high - low)/2.0_wp
       along = 1.0_wp/half
       if (body%axial) along(1::2) = 0.0_wp
-      allocate (moments%now(4, 4, size(body%group)))
+      allocate (moments%now(4, 4, size(body%group)), stat=status)
+      call check_allocation(status)
       do i = 1, size(body%group)
          associate (group => groups(body%group(i)), e => body%element(i))
             n = size(group%ien, 1)
-            allocate (own(3*n, 3*n), now(3*n, 3*n), p(n, 4))
+            allocate (own(3*n, 3*n), now(3*n, 3*n), p(n, 4), stat=status)
+            call check_allocation(status)
             call group%element%mass(e, group%lumped, own)
             call group_mass(group, e, group%lumped, now)
             p(:, 1) = 1.0_wp

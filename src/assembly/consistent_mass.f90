@@ -2,6 +2,7 @@
 !> be integrated anew in every product.
 module consistent_mass
    use kinds, only: wp, int64
+   use memory_shortage, only: check_allocation
    use element_groups, only: group_type, group_mass
    use sparse_operator, only: sparse_operator_type, new_sparse_operator
    implicit none
@@ -29,7 +30,7 @@ contains
       type(sparse_operator_type), intent(out) :: mass
       type(entries_type) :: entries
       integer(int64) :: expected
-      integer :: g
+      integer :: g, status
 
       expected = 0
       do g = 1, size(groups)
@@ -39,7 +40,9 @@ contains
          end associate
       end do
       if (expected == 0 .or. expected > most_entries) return
-      allocate (entries%row(expected), entries%column(expected), entries%value(expected))
+      allocate (entries%row(expected), entries%column(expected), entries%value(expected), &
+            stat=status)
+      call check_allocation(status)
       do g = 1, size(groups)
          if (.not. groups(g)%lumped) call add_group(groups(g), entries)
       end do

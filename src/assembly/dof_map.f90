@@ -3,6 +3,7 @@
 !> vectors of motion and force have one entry a freedom; only solutions are made on equations.
 module dof_map
    use kinds, only: wp
+   use memory_shortage, only: check_allocation
    use histories, only: equation_type
    implicit none
    private
@@ -32,11 +33,13 @@ contains
    pure subroutine new_dof_map(self, needed)
       type(dof_map_type), intent(out) :: self
       logical, intent(in) :: needed(:, :)        !! (3, n_nodes)
-      integer :: n, i, j
+      integer :: n, i, j, status
 
-      allocate (self%freedom(3, size(needed, 2)), self%id(3, size(needed, 2)))
+      allocate (self%freedom(3, size(needed, 2)), self%id(3, size(needed, 2)), stat=status)
+      call check_allocation(status)
       self%n_freedoms = count(needed)
-      allocate (self%node(self%n_freedoms), self%dof(self%n_freedoms))
+      allocate (self%node(self%n_freedoms), self%dof(self%n_freedoms), stat=status)
+      call check_allocation(status)
       self%freedom = 0
       self%id = 0
       n = 0
@@ -87,7 +90,7 @@ contains
    pure subroutine list_dependents(self, constraints)
       type(dof_map_type), intent(inout) :: self
       type(equation_type), intent(in) :: constraints(:)
-      integer :: c, i, n
+      integer :: c, i, n, status
 
       if (allocated(self%dependent)) then
          deallocate (self%dependent, self%master_first, self%master, self%master_coefficient)
@@ -96,8 +99,11 @@ contains
       do c = 1, size(constraints)
          n = n + size(constraints(c)%node) - 1
       end do
-      allocate (self%dependent(size(constraints)), self%master_first(size(constraints) + 1))
-      allocate (self%master(n), self%master_coefficient(n))
+      allocate (self%dependent(size(constraints)), self%master_first(size(constraints) + 1), &
+            stat=status)
+      call check_allocation(status)
+      allocate (self%master(n), self%master_coefficient(n), stat=status)
+      call check_allocation(status)
       n = 0
       do c = 1, size(constraints)
          self%master_first(c) = n + 1
@@ -117,6 +123,7 @@ contains
       type(dof_map_type), intent(inout) :: self
       integer, intent(in) :: number(:)   !! (n_freedoms) equation, 0 prescribed, -1 dependent
       integer :: c, f, i, n, constraint_of(self%n_freedoms)
+      integer :: status
 
       constraint_of = 0
       do c = 1, size(self%dependent)
@@ -124,7 +131,8 @@ contains
       end do
       if (allocated(self%first)) deallocate (self%first, self%equation, self%coefficient)
       n = self%n_freedoms + size(self%master)
-      allocate (self%first(self%n_freedoms + 1), self%equation(n), self%coefficient(n))
+      allocate (self%first(self%n_freedoms + 1), self%equation(n), self%coefficient(n), stat=status)
+      call check_allocation(status)
       n = 0
       do f = 1, self%n_freedoms
          self%first(f) = n + 1

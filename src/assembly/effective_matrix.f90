@@ -2,6 +2,7 @@
 !> implicit elements alone; a freedom of explicit elements only has a column of height one.
 module effective_matrix
    use kinds, only: wp
+   use memory_shortage, only: check_allocation
    use skyline_matrix, only: profile_type, new_profile, couple, skyline_type, new_skyline
    use element_groups, only: group_type
    use dof_map, only: dof_map_type
@@ -45,9 +46,10 @@ contains
    pure subroutine mark_implicit(structure, implicit_equation)
       type(structure_type), intent(in) :: structure
       logical, allocatable, intent(out) :: implicit_equation(:)   !! (n_eq)
-      integer :: g, e
+      integer :: g, e, status
 
-      allocate (implicit_equation(structure%map%n_eq))
+      allocate (implicit_equation(structure%map%n_eq), stat=status)
+      call check_allocation(status)
       implicit_equation = .false.
       do g = 1, size(structure%groups)
          associate (group => structure%groups(g))
@@ -95,13 +97,14 @@ contains
       type(dof_map_type), intent(in) :: map
       integer, intent(in) :: freedoms(:)
       integer, allocatable :: equations(:)
-      integer :: i, n, n_behind
+      integer :: i, n, n_behind, status
 
       n = 0
       do i = 1, size(freedoms)
          if (freedoms(i) > 0) n = n + map%first(freedoms(i) + 1) - map%first(freedoms(i))
       end do
-      allocate (equations(n))
+      allocate (equations(n), stat=status)
+      call check_allocation(status)
       n = 0
       do i = 1, size(freedoms)
          if (freedoms(i) == 0) cycle
@@ -117,7 +120,7 @@ contains
    subroutine list_coupled(structure, first, member)
       type(structure_type), intent(in) :: structure
       integer, allocatable, intent(out) :: first(:), member(:)
-      integer :: f, g, e, n, m, pass
+      integer :: f, g, e, n, m, pass, status
 
       associate (map => structure%map)
          do pass = 1, 2
@@ -132,7 +135,10 @@ contains
                   call append(equations_of(map, structure%groups(g)%lm(:, e)))
                end do
             end do
-            if (pass == 1) allocate (first(n + 1), member(m))
+            if (pass == 1) then
+               allocate (first(n + 1), member(m), stat=status)
+               call check_allocation(status)
+            end if
          end do
       end associate
       first(n + 1) = m + 1
@@ -196,11 +202,12 @@ contains
       type(skyline_type), intent(inout) :: matrix
       real(wp), allocatable :: local(:, :), memory(:, :), total(:, :)
       type(colours_type) :: colours
-      integer :: k, i, n
+      integer :: k, i, n, status
 
       if (.not. contributes(group, factors)) return
       n = size(group%lm, 1)
-      allocate (local(n, size(group%lm, 2)))
+      allocate (local(n, size(group%lm, 2)), stat=status)
+      call check_allocation(status)
       call gather(group, d, local)
       memory = group_history(group, history)
       if (size(group%lm, 2) < worth_threads) then
@@ -209,8 +216,9 @@ contains
       else
          call colour_elements(structure%map, group%lm, colours)
       end if
-      !$omp parallel if (size(group%lm, 2) >= worth_threads) private(total, k)
-      allocate (total(n, n))
+      !$omp parallel if (size(group%lm, 2) >= worth_threads) private(total, k, status)
+      allocate (total(n, n), stat=status)
+      call check_allocation(status)
       do k = 1, size(colours%first) - 1
          !$omp do schedule(static)
          do i = colours%first(k), colours%first(k + 1) - 1

@@ -4,6 +4,7 @@
 !> on the number of threads.
 module element_chunks
    use kinds, only: wp
+   use memory_shortage, only: check_allocation
    use element_blocks, only: blocks_type
    use element_interface, only: element_type
    implicit none
@@ -37,12 +38,14 @@ contains
       integer, intent(in) :: ien(:, :)           !! (n_nodes, n_elements) nodes of the model
       integer, intent(in) :: lm(:, :)            !! (3 n_nodes, n_elements) freedoms
       integer, allocatable :: number(:), node(:)
-      integer :: c, k, i, e, n
+      integer :: c, k, i, e, n, status
 
       self%n = blocks%n_chunks
       self%first_element = blocks%first(blocks%chunk_first)
-      allocate (self%first_node(self%n + 1), self%ien(size(ien, 1), size(ien, 2)))
-      allocate (number(maxval(ien)), node(size(ien)), self%freedom(2, size(ien)))
+      allocate (self%first_node(self%n + 1), self%ien(size(ien, 1), size(ien, 2)), stat=status)
+      call check_allocation(status)
+      allocate (number(maxval(ien)), node(size(ien)), self%freedom(2, size(ien)), stat=status)
+      call check_allocation(status)
       number = 0
       n = 0
       do c = 1, self%n
@@ -70,15 +73,17 @@ contains
    pure subroutine share_out(self)
       type(chunks_type), intent(inout) :: self
       integer, allocatable :: times(:), next(:)
-      integer :: k, j, f, n_shared, n_slots
+      integer :: k, j, f, n_shared, n_slots, status
 
-      allocate (times(maxval(self%freedom)), self%place(2, size(self%freedom, 2)))
+      allocate (times(maxval(self%freedom)), self%place(2, size(self%freedom, 2)), stat=status)
+      call check_allocation(status)
       times = 0
       do k = 1, size(self%freedom, 2)
          times(self%freedom(:, k)) = times(self%freedom(:, k)) + 1
       end do
       allocate (self%shared(count(times > 1)), self%first_slot(count(times > 1) + 1), &
-            next(size(times)))
+            next(size(times)), stat=status)
+      call check_allocation(status)
       n_shared = 0
       n_slots = 0
       do f = 1, size(times)

@@ -3,6 +3,7 @@
 !> colours alone.
 module element_colours
    use kinds, only: int64
+   use memory_shortage, only: check_allocation
    use dof_map, only: dof_map_type
    implicit none
    private
@@ -26,10 +27,11 @@ contains
       integer, intent(in) :: lm(:, :)            !! (n, n_elements) freedoms, 0 where there is none
       type(colours_type), intent(out) :: self
       integer(int64), allocatable :: taken(:)
-      integer :: colour(size(lm, 2)), e, i, n_colours
+      integer :: colour(size(lm, 2)), e, i, n_colours, status
       integer(int64) :: of_element
 
-      allocate (taken(map%n_eq))
+      allocate (taken(map%n_eq), stat=status)
+      call check_allocation(status)
       taken = 0
       n_colours = most_shared
       do e = 1, size(lm, 2)
@@ -78,6 +80,7 @@ contains
       integer, intent(in) :: colour(:), n_colours
       type(colours_type), intent(inout) :: self
       integer :: next(n_colours + 1), e, k
+      integer :: status
 
       next = 0
       do e = 1, size(colour)
@@ -89,7 +92,8 @@ contains
       end do
       ! colours that no element has are left out
       self%first = [pack(next(:n_colours), next(2:) > next(:n_colours)), next(n_colours + 1)]
-      allocate (self%element(size(colour)))
+      allocate (self%element(size(colour)), stat=status)
+      call check_allocation(status)
       do e = 1, size(colour)
          self%element(next(colour(e))) = e
          next(colour(e)) = next(colour(e)) + 1

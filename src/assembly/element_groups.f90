@@ -4,6 +4,7 @@ module element_groups
    use kinds, only: wp
    use errors, only: error_type, new_error, status_internal
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    use places, only: fail_at
    use model, only: model_type
    use mesh, only: element_mass, element_spring1, element_spring2, element_springa, &
@@ -56,6 +57,7 @@ contains
       integer, allocatable :: key(:)
       integer :: e, g, n_groups, scheme_of(model%elements%n)
       logical :: lumped_of(model%elements%n)
+      integer :: status
 
       call resolve_schemes(model, lumped_default, scheme_of, lumped_of)
       if (present(automatic)) then
@@ -63,7 +65,8 @@ contains
       end if
       where (scheme_of == scheme_automatic) scheme_of = scheme_explicit
       call number_groups(model, scheme_of, lumped_of, key, n_groups)
-      allocate (groups(n_groups))
+      allocate (groups(n_groups), stat=status)
+      call check_allocation(status)
       do g = 1, n_groups
          groups(g)%member = pack([(e, e=1, model%elements%n)], key == g)
          e = groups(g)%member(1)
@@ -106,12 +109,14 @@ contains
       logical, intent(in) :: lumped_of(:)
       integer, allocatable, intent(out) :: key(:)
       integer, intent(out) :: n_groups
-      integer :: e, variant
+      integer :: e, variant, status
       integer, allocatable :: rank_of(:), number_of(:, :, :)
 
       call rank_kinds(model%elements%kind(:model%elements%n), rank_of)
-      allocate (key(model%elements%n))
-      allocate (number_of(6, maxval([rank_of, 1]), 0:size(model%sections)))
+      allocate (key(model%elements%n), stat=status)
+      call check_allocation(status)
+      allocate (number_of(6, maxval([rank_of, 1]), 0:size(model%sections)), stat=status)
+      call check_allocation(status)
       number_of = 0
       key = 0
       n_groups = 0
@@ -133,9 +138,10 @@ contains
    pure subroutine rank_kinds(kind, rank_of)
       integer, intent(in) :: kind(:)
       integer, allocatable, intent(out) :: rank_of(:)   !! (largest kind)
-      integer :: i
+      integer :: i, status
 
-      allocate (rank_of(maxval([kind, 1])))
+      allocate (rank_of(maxval([kind, 1])), stat=status)
+      call check_allocation(status)
       rank_of = 0
       rank_of(kind) = 1
       do i = 2, size(rank_of)
@@ -146,11 +152,12 @@ contains
    subroutine gather_nodes(group, model)
       type(group_type), intent(inout) :: group
       type(model_type), intent(in) :: model
-      integer :: i, e, n_nodes
+      integer :: i, e, n_nodes, status
 
       e = group%member(1)
       n_nodes = model%elements%first(e + 1) - model%elements%first(e)
-      allocate (group%ien(n_nodes, size(group%member)))
+      allocate (group%ien(n_nodes, size(group%member)), stat=status)
+      call check_allocation(status)
       do i = 1, size(group%member)
          e = model%elements%first(group%member(i))
          group%ien(:, i) = model%elements%nodes(e:e + n_nodes - 1)
@@ -192,9 +199,10 @@ contains
       type(group_type), intent(inout) :: group
       type(section_type), intent(in) :: section
       type(point_mass_type), allocatable :: element
-      integer :: i
+      integer :: i, status
 
-      allocate (element)
+      allocate (element, stat=status)
+      call check_allocation(status)
       call new_point_mass(element, [(section%coefficient, i=1, size(group%member))])
       call move_alloc(element, group%element)
    end subroutine make_mass
@@ -204,8 +212,10 @@ contains
       type(section_type), intent(in) :: section
       real(wp), intent(in) :: b(:, :)
       type(spring_type), allocatable :: element
+      integer :: status
 
-      allocate (element)
+      allocate (element, stat=status)
+      call check_allocation(status)
       if (section%nonlinear) then
          call new_spring(element, b, 0.0_wp, section%force%x, section%force%y)
       else
@@ -219,8 +229,10 @@ contains
       type(section_type), intent(in) :: section
       real(wp), intent(in) :: b(:, :)
       type(dashpot_type), allocatable :: element
+      integer :: status
 
-      allocate (element)
+      allocate (element, stat=status)
+      call check_allocation(status)
       call new_dashpot(element, b, section%coefficient)
       call move_alloc(element, group%element)
    end subroutine make_dashpot
@@ -232,13 +244,15 @@ contains
       real(wp), intent(in) :: b(:, :), length(:)
       type(truss_type), allocatable :: element
       type(truss_material_type) :: shared
+      integer :: status
 
       shared%young = material%young
       shared%density = material%density
       shared%area = section%area
       shared%damping_alpha = material%damping_alpha
       shared%damping_beta = material%damping_beta
-      allocate (element)
+      allocate (element, stat=status)
+      call check_allocation(status)
       call new_truss(element, b, length, shared, group%lumped)
       call move_alloc(element, group%element)
    end subroutine make_truss
@@ -250,9 +264,11 @@ contains
       type(section_type), intent(in) :: section
       real(wp), allocatable, intent(out) :: b(:, :), length(:)
       type(error_type), allocatable, intent(out) :: error
-      integer :: i, e
+      integer :: i, e, status
 
-      allocate (b(3*size(group%ien, 1), size(group%member)), length(size(group%member)))
+      allocate (b(3*size(group%ien, 1), size(group%member)), length(size(group%member)), &
+            stat=status)
+      call check_allocation(status)
       length = 0.0_wp
       do i = 1, size(group%member)
          select case (group%kind)
@@ -299,17 +315,20 @@ contains
    !> Keeps the damping matrices if there is any damping in the group.
    subroutine store_damping(group)
       type(group_type), intent(inout) :: group
-      integer :: n, i
+      integer :: n, i, status
       real(wp), allocatable :: matrix(:, :)
 
       n = 3*group%element%n_nodes
-      allocate (matrix(n, n))
+      allocate (matrix(n, n), stat=status)
+      call check_allocation(status)
       call group%element%damping(1, matrix)
       if (.not. any(abs(matrix) > 0.0_wp)) then
-         allocate (group%damping(n, n, 0))
+         allocate (group%damping(n, n, 0), stat=status)
+         call check_allocation(status)
          return
       end if
-      allocate (group%damping(n, n, group%element%n_elements))
+      allocate (group%damping(n, n, group%element%n_elements), stat=status)
+      call check_allocation(status)
       do i = 1, group%element%n_elements
          call group%element%damping(i, group%damping(:, :, i))
       end do

@@ -2,6 +2,7 @@
 !> effective matrix that is cheapest to factorize.
 module equation_order
    use kinds, only: wp, int64
+   use memory_shortage, only: check_allocation
    use histories, only: equation_type
    use skyline_matrix, only: profile_type, profile_entries, profile_cost
    use graph, only: graph_type, new_graph
@@ -44,7 +45,7 @@ contains
       type(profile_type) :: trial
       integer, allocatable :: vertex_node(:), order(:, :)
       logical, allocatable :: implicit_equation(:)
-      integer :: i
+      integer :: i, status
 
       call number_equations(structure%map, prescribed, constraints)
       call find_profile(structure, profile)
@@ -54,7 +55,8 @@ contains
       call build_node_graph(structure, graph, vertex_node)
       if (graph%n == 0) return
       ordering%compared = .true.
-      allocate (order(size(structure%map%freedom, 2), n_orders))
+      allocate (order(size(structure%map%freedom, 2), n_orders), stat=status)
+      call check_allocation(status)
       order(:, 1) = [(i, i=1, size(order, 1))]
       order(:, 2) = all_nodes(vertex_node, cuthill_mckee_order(graph), size(order, 1))
       order(:, 3) = all_nodes(vertex_node, sloan_order(graph), size(order, 1))
@@ -84,11 +86,12 @@ contains
       type(graph_type), intent(out) :: graph
       integer, allocatable, intent(out) :: vertex_node(:)   !! node of each vertex
       integer, allocatable :: first(:), member(:), vertex(:)
-      integer :: i, n
+      integer :: i, n, status
 
       call list_cliques(structure, first, member)
       if (sum(real(first(2:) - first(:size(first) - 1), wp)**2) > too_many) return
-      allocate (vertex(size(structure%map%freedom, 2)))
+      allocate (vertex(size(structure%map%freedom, 2)), stat=status)
+      call check_allocation(status)
       vertex = 0
       vertex(member) = 1
       vertex_node = pack([(i, i=1, size(vertex))], vertex == 1)

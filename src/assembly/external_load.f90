@@ -1,6 +1,7 @@
 !> Applied loads through the steps of a run: nodal forces, gravity, base motion.
 module external_load
    use kinds, only: wp
+   use memory_shortage, only: check_allocation
    use histories, only: amplitude_type, time_step, distributed_load_type, load_pressure, &
          load_body, load_centrifugal
    use amplitude_value, only: amplitude_at, amplitude_start, corner_after
@@ -47,9 +48,12 @@ contains
       type(model_type), intent(in) :: model
       integer, intent(in) :: i_step
       real(wp), intent(in) :: t                  !! total time at the start of the step
-      integer :: i
+      integer :: i, status
 
-      if (.not. allocated(self%loads)) allocate (self%loads(0))
+      if (.not. allocated(self%loads)) then
+         allocate (self%loads(0), stat=status)
+         call check_allocation(status)
+      end if
       associate (step => model%steps(i_step))
          call hold_earlier(self, step, t)
          call add_point_loads(self, structure, model, step, t)
@@ -73,9 +77,10 @@ contains
       type(load_type), allocatable :: kept(:)
       real(wp) :: weight(2)
       logical :: keep
-      integer :: i, n
+      integer :: i, n, status
 
-      allocate (kept(size(self%loads)))
+      allocate (kept(size(self%loads)), stat=status)
+      call check_allocation(status)
       n = 0
       do i = 1, size(self%loads)
          keep = self%loads(i)%kind /= kind_base
@@ -177,14 +182,15 @@ contains
       real(wp) :: pattern(structure%map%n_freedoms)
       logical :: member(model%elements%n), exists
       real(wp), allocatable :: local(:)
-      integer :: g, e
+      integer :: g, e, status
 
       member = load%set == 0
       if (load%set > 0) member(model%element_sets(load%set)%members) = .true.
       pattern = 0.0_wp
       do g = 1, size(structure%groups)
          associate (group => structure%groups(g))
-            allocate (local(size(group%lm, 1)))
+            allocate (local(size(group%lm, 1)), stat=status)
+            call check_allocation(status)
             do e = 1, size(group%member)
                if (.not. member(group%member(e))) cycle
                select case (load%kind)
@@ -268,10 +274,11 @@ contains
       integer, intent(in) :: kind
       real(wp), intent(in) :: pattern(:)
       type(load_type), allocatable :: longer(:)
-      integer :: n
+      integer :: n, status
 
       n = size(self%loads)
-      allocate (longer(n + 1))
+      allocate (longer(n + 1), stat=status)
+      call check_allocation(status)
       longer(:n) = self%loads
       longer(n + 1)%kind = kind
       longer(n + 1)%pattern = pattern
@@ -303,7 +310,7 @@ contains
       real(wp) :: pattern(structure%map%n_freedoms)
       logical :: member(model%elements%n)
       real(wp), allocatable :: m(:, :)
-      integer :: g, e, i
+      integer :: g, e, i, status
 
       member = set == 0
       if (set > 0) member(model%element_sets(set)%members) = .true.
@@ -311,7 +318,8 @@ contains
       do g = 1, size(structure%groups)
          associate (group => structure%groups(g))
             i = size(group%lm, 1)
-            allocate (m(i, i))
+            allocate (m(i, i), stat=status)
+            call check_allocation(status)
             do e = 1, size(group%member)
                if (.not. member(group%member(e))) cycle
                call group%element%mass(e, group%lumped, m)

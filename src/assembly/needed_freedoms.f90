@@ -2,6 +2,7 @@
 !> load, condition, gap or contact names.
 module needed_freedoms
    use kinds, only: wp
+   use memory_shortage, only: check_allocation
    use mesh, only: element_mass, element_gap
    use model, only: model_type
    use surfaces, only: contact_pair_type, rigid_plane
@@ -23,9 +24,10 @@ contains
       logical, allocatable, intent(out) :: needed(:, :)   !! (3, n_nodes)
       logical, allocatable :: named(:, :)
       logical :: has_mass(model%nodes%n)
-      integer :: i, j, g
+      integer :: i, j, g, status
 
-      allocate (needed(3, model%nodes%n), named(3, model%nodes%n))
+      allocate (needed(3, model%nodes%n), named(3, model%nodes%n), stat=status)
+      call check_allocation(status)
       needed = .false.
       named = .false.
       has_mass = .false.

@@ -2,6 +2,7 @@
 module prescribed_motion
    use kinds, only: wp
    use state_archive, only: archive_type
+   use memory_shortage, only: check_allocation
    use histories, only: amplitude_type, boundary_type, time_step, &
          motion_displacement, motion_velocity
    use amplitude_value, only: amplitude_at, amplitude_slope, amplitude_integral, &
@@ -45,11 +46,12 @@ contains
       real(wp), intent(in) :: span(2)                  !! start and length of the step
       logical, intent(in) :: static
       type(motion_type), allocatable :: list(:)
-      integer :: where_is(maxval(freedom)), i, f, n
+      integer :: where_is(maxval(freedom)), i, f, n, status
 
       n = 0
       where_is = 0
-      allocate (list(size(boundaries) + n_motions(self)))
+      allocate (list(size(boundaries) + n_motions(self)), stat=status)
+      call check_allocation(status)
       do i = 1, merge(n_motions(self), 0, keep)
          n = n + 1
          list(n) = self%motions(i)

@@ -14,6 +14,7 @@ module redistributed_mass
    use disjoint_sets, only: join, top_of
    use errors, only: error_type
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    use places, only: fail_at
    use model, only: model_type
    use mesh, only: element_mass, element_truss, is_solid_kind, solid_plane, axisymmetric
@@ -104,11 +105,14 @@ contains
       type(model_type), intent(in) :: model
       logical, intent(in) :: contact(:)
       type(error_type), allocatable, intent(out) :: error
-      integer :: e
+      integer :: e, status
 
-      allocate (group%mass_share(size(group%ien, 1), size(group%member)))
-      allocate (group%moved_mass, mold=group%mass_share)
-      allocate (group%mass_factor(size(group%member)))
+      allocate (group%mass_share(size(group%ien, 1), size(group%member)), stat=status)
+      call check_allocation(status)
+      allocate (group%moved_mass, mold=group%mass_share, stat=status)
+      call check_allocation(status)
+      allocate (group%mass_factor(size(group%member)), stat=status)
+      call check_allocation(status)
       group%mass_share = 1.0_wp
       group%moved_mass = 0.0_wp
       group%mass_factor = 1.0_wp
@@ -182,7 +186,7 @@ contains
       type(group_type), intent(in) :: groups(:)
       logical, intent(in) :: contact(:)          !! (n_nodes)
       type(body_type), allocatable, intent(out) :: bodies(:)
-      integer :: parent(size(contact)), body_of(size(contact)), i, n, g, e
+      integer :: parent(size(contact)), body_of(size(contact)), i, n, g, e, status
 
       parent = [(i, i=1, size(contact))]
       do g = 1, size(groups)
@@ -202,7 +206,8 @@ contains
          body_of(parent(i)) = n
       end do
       body_of = body_of(parent)
-      allocate (bodies(n))
+      allocate (bodies(n), stat=status)
+      call check_allocation(status)
       call list_elements(groups, body_of, bodies)
    end subroutine find_bodies
 
@@ -211,7 +216,7 @@ contains
       type(group_type), intent(in) :: groups(:)
       integer, intent(in) :: body_of(:)          !! (n_nodes)
       type(body_type), intent(inout) :: bodies(:)
-      integer :: n(size(bodies)), pass, b, g, e
+      integer :: n(size(bodies)), pass, b, g, e, status
 
       do pass = 1, 2
          n = 0
@@ -229,7 +234,8 @@ contains
          end do
          if (pass == 2) return
          do b = 1, size(bodies)
-            allocate (bodies(b)%group(n(b)), bodies(b)%element(n(b)))
+            allocate (bodies(b)%group(n(b)), bodies(b)%element(n(b)), stat=status)
+            call check_allocation(status)
          end do
       end do
    end subroutine list_elements

@@ -4,6 +4,7 @@ module solid_factory
    use kinds, only: wp
    use errors, only: error_type
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    use places, only: fail_at
    use congruence, only: find_classes
    use model, only: model_type
@@ -34,11 +35,12 @@ contains
       type(section_type) :: section
       real(wp), allocatable :: x(:, :, :)
       integer, allocatable :: class(:), first(:)
-      integer :: i
+      integer :: i, status
 
       section = model%sections(model%elements%section(member(1)))
       shape = shape_of(model%elements%kind(member(1)), section)
-      allocate (x(2, size(ien, 1), size(ien, 2)))
+      allocate (x(2, size(ien, 1), size(ien, 2)), stat=status)
+      call check_allocation(status)
       do i = 1, size(member)
          x(:, :, i) = model%nodes%x(1:2, ien(:, i))
       end do
@@ -47,7 +49,8 @@ contains
          call check_geometry(shape, x(:, :, first(i)), model, member(first(i)), error)
          if (allocated(error)) return
       end do
-      allocate (made)
+      allocate (made, stat=status)
+      call check_allocation(status)
       call new_solid(made, shape, x, material_of(model%materials(section%material)), lumped)
       call move_alloc(made, element)
    end subroutine make_solid
@@ -68,7 +71,7 @@ contains
    pure function material_of(material) result(shared)
       type(material_type), intent(in) :: material
       type(solid_material_type) :: shared
-      integer :: n
+      integer :: n, status
 
       shared%young = material%young
       shared%poisson = material%poisson
@@ -79,7 +82,8 @@ contains
       shared%kinematic = material%kinematic
       if (.not. material%has_plastic) return
       n = material%hardening%n
-      allocate (shared%hardening(2, n))
+      allocate (shared%hardening(2, n), stat=status)
+      call check_allocation(status)
       shared%hardening(1, :) = material%hardening%x(:n)
       shared%hardening(2, :) = material%hardening%y(:n)
    end function material_of

@@ -2,6 +2,7 @@
 !> in `effective_matrix`.
 module sparse_effective
    use kinds, only: wp
+   use memory_shortage, only: check_allocation
    use sparse_matrix, only: pattern_type, new_pattern, add_entry, pattern_entries, diagonal_places
    use element_groups, only: group_type
    use dof_map, only: dof_map_type
@@ -33,12 +34,15 @@ contains
       real(wp), intent(in) :: history(:)         !! (n_history) last accepted
       real(wp), intent(in) :: factors(3)         !! c_mass, c_damping, c_stiffness
       real(wp), allocatable, intent(inout) :: values(:)   !! (entries)
-      integer :: f, g
+      integer :: f, g, status
 
       if (allocated(values)) then
          if (size(values, kind=kind(pattern%first)) /= pattern_entries(pattern)) deallocate (values)
       end if
-      if (.not. allocated(values)) allocate (values(pattern_entries(pattern)))
+      if (.not. allocated(values)) then
+         allocate (values(pattern_entries(pattern)), stat=status)
+         call check_allocation(status)
+      end if
       values = 0.0_wp
       do f = 1, structure%map%n_freedoms
          call add_pair(structure%map, pattern, values, [f, f], factors(1)*structure%lumped_mass(f))
@@ -55,11 +59,12 @@ contains
       real(wp), intent(in) :: d(:), history(:), factors(3)
       real(wp), intent(inout) :: values(:)
       real(wp), allocatable :: local(:, :), total(:, :), memory(:, :)
-      integer :: e, n
+      integer :: e, n, status
 
       if (.not. contributes(group, factors)) return
       n = size(group%lm, 1)
-      allocate (local(n, size(group%lm, 2)), total(n, n))
+      allocate (local(n, size(group%lm, 2)), total(n, n), stat=status)
+      call check_allocation(status)
       call gather(group, d, local)
       memory = group_history(group, history)
       do e = 1, size(group%lm, 2)

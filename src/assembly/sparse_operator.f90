@@ -1,6 +1,7 @@
 !> A sparse matrix over the freedoms of a structure, for products with vectors.
 module sparse_operator
    use kinds, only: wp
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -24,9 +25,11 @@ contains
       integer, intent(in) :: row(:), column(:)
       real(wp), intent(in) :: entry(:)
       integer :: next(n + 1), i, k
+      integer :: status
 
       self%n = n
-      allocate (self%first(n + 1), self%column(size(row)), self%entry(size(row)))
+      allocate (self%first(n + 1), self%column(size(row)), self%entry(size(row)), stat=status)
+      call check_allocation(status)
       self%first = 0
       do k = 1, size(row)
          self%first(row(k) + 1) = self%first(row(k) + 1) + 1

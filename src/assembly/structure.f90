@@ -4,6 +4,7 @@ module structure
    use kinds, only: wp
    use errors, only: error_type
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    use places, only: fail_at
    use mesh, only: scheme_implicit, scheme_explicit
    use model, only: model_type
@@ -45,7 +46,7 @@ contains
       integer, intent(in), optional :: automatic(:)   !! (n_elements) scheme in place of AUTO
       logical, allocatable :: needed(:, :)
       logical :: lumped_default
-      integer :: i, g
+      integer :: i, g, status
 
       lumped_default = .false.
       do i = 1, size(model%steps)
@@ -72,7 +73,8 @@ contains
                + self%groups(g)%element%n_history*self%groups(g)%element%n_elements
       end do
       call build_consistent_mass(self%groups, self%map%n_freedoms, self%coupled_mass)
-      allocate (self%lumped_mass(self%map%n_freedoms))
+      allocate (self%lumped_mass(self%map%n_freedoms), stat=status)
+      call check_allocation(status)
       self%lumped_mass = 0.0_wp
       do g = 1, size(self%groups)
          if (self%groups(g)%lumped) call add_lumped(self%groups(g), 1.0_wp, self%lumped_mass)
@@ -106,9 +108,10 @@ contains
    subroutine locate(group, map)
       type(group_type), intent(inout) :: group
       type(dof_map_type), intent(in) :: map
-      integer :: e, i
+      integer :: e, i, status
 
-      allocate (group%lm(3*size(group%ien, 1), size(group%member)))
+      allocate (group%lm(3*size(group%ien, 1), size(group%member)), stat=status)
+      call check_allocation(status)
       do e = 1, size(group%member)
          do i = 1, size(group%ien, 1)
             group%lm(3*i - 2:3*i, e) = map%freedom(:, group%ien(i, e))
@@ -153,7 +156,7 @@ contains
    subroutine find_carried(self, carried)
       type(structure_type), intent(in) :: self
       logical, intent(out) :: carried(:)
-      integer :: g, e, i
+      integer :: g, e, i, status
       real(wp), allocatable :: k(:, :), m(:, :), c(:, :)
       logical :: entry
 
@@ -161,7 +164,8 @@ contains
       do g = 1, size(self%groups)
          associate (group => self%groups(g))
             i = size(group%lm, 1)
-            allocate (k(i, i), m(i, i), c(i, i))
+            allocate (k(i, i), m(i, i), c(i, i), stat=status)
+            call check_allocation(status)
             do e = 1, size(group%member)
                if (all(carried(pack(group%lm(:, e), group%lm(:, e) > 0)))) cycle
                call group%element%largest_stiffness(e, k)
@@ -273,11 +277,12 @@ contains
       real(wp), intent(in) :: v(:)               !! (n_freedoms)
       real(wp), intent(inout) :: force(:)        !! (n_freedoms)
       real(wp), allocatable :: local(:, :)
-      integer :: g, e
+      integer :: g, e, status
 
       do g = 1, size(self%groups)
          if (self%groups(g)%scheme /= scheme .or. size(self%groups(g)%damping) == 0) cycle
-         allocate (local(size(self%groups(g)%lm, 1), size(self%groups(g)%lm, 2)))
+         allocate (local(size(self%groups(g)%lm, 1), size(self%groups(g)%lm, 2)), stat=status)
+         call check_allocation(status)
          call gather(self%groups(g), v, local)
          do e = 1, size(local, 2)
             local(:, e) = matmul(self%groups(g)%damping(:, :, e), local(:, e))
@@ -293,7 +298,7 @@ contains
       real(wp), intent(in) :: a(:)               !! (n_freedoms)
       real(wp) :: force(size(a))
       real(wp), allocatable :: local(:, :), m(:, :)
-      integer :: g, e
+      integer :: g, e, status
 
       force = self%lumped_mass*a
       if (self%coupled_mass%n > 0) then
@@ -302,8 +307,10 @@ contains
       end if
       do g = 1, size(self%groups)
          if (self%groups(g)%lumped) cycle
-         allocate (local(size(self%groups(g)%lm, 1), size(self%groups(g)%lm, 2)))
-         allocate (m(size(local, 1), size(local, 1)))
+         allocate (local(size(self%groups(g)%lm, 1), size(self%groups(g)%lm, 2)), stat=status)
+         call check_allocation(status)
+         allocate (m(size(local, 1), size(local, 1)), stat=status)
+         call check_allocation(status)
          call gather(self%groups(g), a, local)
          do e = 1, size(local, 2)
             call group_mass(self%groups(g), e, .false., m)

@@ -8,6 +8,7 @@ module file_calls
          c_getrlimit, c_mkdir, c_pread, c_realpath, c_rename, c_setenv, c_signal, c_statx, &
          c_strerror, c_strlen, c_unlink, c_write
    use kinds, only: int64
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -238,8 +239,10 @@ contains
       character(kind=c_char), allocatable :: bytes(:)
       integer(c_int64_t) :: place
       integer(c_size_t) :: n, first, written
+      integer :: status
 
-      allocate (bytes(block_length))
+      allocate (bytes(block_length), stat=status)
+      call check_allocation(status)
       reason = ''
       place = 0
       do
@@ -380,14 +383,15 @@ contains
       type(c_ptr), intent(in) :: from
       character(len=:), allocatable :: text
       character(kind=c_char), pointer :: bytes(:)
-      integer :: i
+      integer :: i, status
 
       if (.not. c_associated(from)) then
          text = ''
          return
       end if
       call c_f_pointer(from, bytes, [c_strlen(from)])
-      allocate (character(len=size(bytes)) :: text)
+      allocate (character(len=size(bytes)) :: text, stat=status)
+      call check_allocation(status)
       do i = 1, size(bytes)
          text(i:i) = bytes(i)
       end do

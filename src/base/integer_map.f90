@@ -2,6 +2,7 @@
 !> nor ordered.
 module integer_map
    use kinds, only: int64
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -35,10 +36,11 @@ contains
       class(integer_map_type), intent(inout) :: self
       integer, intent(in) :: key
       integer, intent(in) :: value   !! positive
-      integer :: slot
+      integer :: slot, status
 
       if (.not. allocated(self%keys)) then
-         allocate (self%keys(16), self%values(16))
+         allocate (self%keys(16), self%values(16), stat=status)
+         call check_allocation(status)
          self%keys = 0
          self%values = 0
       end if
@@ -71,12 +73,13 @@ contains
    pure subroutine grow(self)
       type(integer_map_type), intent(inout) :: self
       integer, allocatable :: keys(:), values(:)
-      integer :: i, slot, length
+      integer :: i, slot, length, status
 
       call move_alloc(self%keys, keys)
       call move_alloc(self%values, values)
       length = 2*size(keys)
-      allocate (self%keys(length), self%values(length))
+      allocate (self%keys(length), self%values(length), stat=status)
+      call check_allocation(status)
       self%keys = 0
       self%values = 0
       do i = 1, size(keys)

@@ -16,8 +16,8 @@ module part_file
    implicit none
    private
 
-   public :: part_file_type, check_output, claim, fill_part, publish, finish, discard, reserve_room, forget_room
-   public :: is_claimed, has_published, part_path
+   public :: part_file_type, check_output, claim, fill_part, publish, finish, discard
+   public :: reserve_room, forget_room, is_claimed, has_published, part_path, shown_path
 
    !> An output that this process alone may write to.
    type :: part_file_type
@@ -331,6 +331,14 @@ contains
 
       path = self%path//part_ending
    end function part_path
+
+   !> The path itself, as the user has named it.
+   pure function shown_path(self) result(path)
+      type(part_file_type), intent(in) :: self
+      character(len=:), allocatable :: path
+
+      path = self%shown
+   end function shown_path
 
    !> No space, or no access any more: what is lost by that.
    subroutine full_error(self, reason, error)

@@ -6,6 +6,7 @@
 !> Logicals are kept as integers 0 and 1, all integers with 64 bits.
 module state_archive
    use kinds, only: wp, int64
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -288,11 +289,15 @@ contains
    subroutine make_room(self)
       class(archive_type), intent(inout) :: self
       type(entry_type), allocatable :: longer(:)
-      integer :: i
+      integer :: i, status
 
-      if (.not. allocated(self%entries)) allocate (self%entries(64))
+      if (.not. allocated(self%entries)) then
+         allocate (self%entries(64), stat=status)
+         call check_allocation(status)
+      end if
       if (self%n == size(self%entries)) then
-         allocate (longer(2*self%n))
+         allocate (longer(2*self%n), stat=status)
+         call check_allocation(status)
          do i = 1, self%n
             call move_alloc(self%entries(i)%name, longer(i)%name)
             call move_alloc(self%entries(i)%reals, longer(i)%reals)

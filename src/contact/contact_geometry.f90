@@ -5,6 +5,7 @@ module contact_geometry
    use kinds, only: wp, int64
    use text, only: to_text
    use state_archive, only: archive_type
+   use memory_shortage, only: check_allocation
    use model, only: model_type
    use surfaces, only: rigid_surface_type
    use histories, only: amplitude_type
@@ -69,7 +70,7 @@ contains
       type(model_type), intent(in) :: model
       type(contact_pair_list_type), intent(in) :: list
       type(positions_type) :: positions
-      integer :: i, n_passes, n_targets
+      integer :: i, n_passes, n_targets, status
 
       self%rows = list%rows
       self%amplitudes = model%amplitudes
@@ -82,7 +83,8 @@ contains
          n_passes = n_passes + 1
          if (list%rows(i)%kind == row_surface) n_targets = n_targets + 1
       end do
-      allocate (self%passes(n_passes), self%targets(n_targets))
+      allocate (self%passes(n_passes), self%targets(n_targets), stat=status)
+      call check_allocation(status)
       n_passes = 0
       n_targets = 0
       do i = 1, size(list%rows)

@@ -5,6 +5,7 @@ module contact_pairs
    use kinds, only: wp
    use errors, only: error_type
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    use places, only: place_type, fail_at
    use mesh, only: element_gap
    use properties, only: name_length
@@ -55,7 +56,7 @@ contains
       type(model_type), intent(in) :: model
       type(contact_pair_list_type), intent(out) :: list
       type(error_type), allocatable, intent(out) :: error
-      integer :: p, pass, n, e
+      integer :: p, pass, n, e, status
 
       n = count(model%elements%kind(:model%elements%n) == element_gap)
       do p = 1, size(model%pairs)
@@ -63,7 +64,8 @@ contains
             n = n + size(model%surfaces(contactor_surface(model, p, pass))%nodes)
          end do
       end do
-      allocate (list%rows(n), list%names(0))
+      allocate (list%rows(n), list%names(0), stat=status)
+      call check_allocation(status)
       n = 0
       do p = 1, size(model%pairs)
          call append_name(list, pair_name(model, p))
@@ -136,13 +138,14 @@ contains
       type(contact_pair_list_type), intent(inout) :: list
       character(len=*), intent(in) :: name
       character(len=2*name_length + 1), allocatable :: longer(:)
-      integer :: n
+      integer :: n, status
 
       n = size(list%names)
       if (n > 0) then
          if (list%names(n) == name) return
       end if
-      allocate (longer(n + 1))
+      allocate (longer(n + 1), stat=status)
+      call check_allocation(status)
       longer(:n) = list%names
       longer(n + 1) = name
       call move_alloc(longer, list%names)

@@ -1,6 +1,7 @@
 !> Outward normals at the nodes of a surface.
 module contactor_normals
    use kinds, only: wp
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -15,9 +16,10 @@ contains
       real(wp), intent(in) :: x(:, :)            !! (3, n_nodes) positions
       real(wp), allocatable, intent(out) :: normals(:, :)   !! (2, size(nodes))
       real(wp) :: along(2)
-      integer :: e, i, k
+      integer :: e, i, k, status
 
-      allocate (normals(2, size(nodes)))
+      allocate (normals(2, size(nodes)), stat=status)
+      call check_allocation(status)
       normals = 0.0_wp
       do e = 1, size(edges, 2)
          along = x(:2, edges(2, e)) - x(:2, edges(1, e))

@@ -5,6 +5,7 @@
 !> the surface.
 module edge_bins
    use kinds, only: int64, wp
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -31,7 +32,7 @@ contains
       real(wp), intent(in) :: low(:, :), high(:, :) !! (2, n) boxes of the edges
       real(wp), intent(in) :: smallest              !! cells need not be smaller than this
       integer, allocatable :: cell(:, :)
-      integer :: n, e, k, grid
+      integer :: n, e, k, grid, status
       real(wp) :: least
 
       n = size(low, 2)
@@ -45,8 +46,10 @@ contains
       end do
       self%mask = self%mask - 1
       if (allocated(self%first)) deallocate (self%first, self%edge, self%cell)
-      allocate (self%first(0:int(self%mask) + 1), source=0)
-      allocate (cell(3, n), self%cell(3, n), self%edge(n))
+      allocate (self%first(0:int(self%mask) + 1), source=0, stat=status)
+      call check_allocation(status)
+      allocate (cell(3, n), self%cell(3, n), self%edge(n), stat=status)
+      call check_allocation(status)
       do e = 1, n
          call choose_grid(self, max(least, maxval(high(:, e) - low(:, e))), grid)
          cell(1:2, e) = cell_of(self, grid, (low(:, e) + high(:, e))/2.0_wp)

@@ -3,6 +3,7 @@
 !> the body, so that the forces of a pressure linear along each edge give back that pressure.
 module pressure_recovery
    use kinds, only: wp
+   use memory_shortage, only: check_allocation
    use topology, only: line_functions, line_derivatives
    use quadrature, only: line_rule
    use skyline_matrix, only: profile_type, skyline_type, new_profile, couple, new_skyline
@@ -37,11 +38,13 @@ contains
       real(wp), intent(in) :: x(:, :)            !! (2 or 3, n_nodes)
       real(wp), intent(in) :: thickness(:)       !! (n_edges) of plane bodies
       logical, intent(in) :: around_axis(:)      !! (n_edges) the depth is 2 pi r instead
-      integer :: e, n
+      integer :: e, n, status
 
       call order_nodes(self, edges, size(x, 2))
-      allocate (self%edges(3, size(edges, 2)), source=0)
-      allocate (self%mass(3, 3, size(edges, 2)), source=0.0_wp)
+      allocate (self%edges(3, size(edges, 2)), source=0, stat=status)
+      call check_allocation(status)
+      allocate (self%mass(3, 3, size(edges, 2)), source=0.0_wp, stat=status)
+      call check_allocation(status)
       call new_profile(self%profile, size(self%nodes))
       do e = 1, size(edges, 2)
          n = merge(3, 2, edges(3, e) > 0)
@@ -78,10 +81,11 @@ contains
       integer, intent(in) :: n_nodes
       type(target_type) :: chain
       logical :: seen(size(edges, 2))
-      integer :: e, n
+      integer :: e, n, status
 
       call new_target(chain, edges, n_nodes)
-      allocate (self%nodes(size(chain%nodes)), self%place(n_nodes), source=0)
+      allocate (self%nodes(size(chain%nodes)), self%place(n_nodes), source=0, stat=status)
+      call check_allocation(status)
       seen = .false.
       n = 0
       do e = 1, size(edges, 2)

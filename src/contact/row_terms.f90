@@ -1,6 +1,7 @@
 !> Contact rows as linear forms of nodal motion: what a row asks of which node.
 module row_terms
    use kinds, only: wp
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -30,12 +31,19 @@ contains
    pure subroutine start_terms(self, n)
       type(row_terms_type), intent(inout) :: self
       integer, intent(in) :: n                   !! rows
+      integer :: status
 
       if (.not. allocated(self%first)) then
-         allocate (self%first(n + 1), self%gap(n), self%facing(n), self%bend(n), self%weight(n))
-         allocate (self%at_rest(n))
-         allocate (self%direction(3, n), self%along(3, n))
-         allocate (self%node(4*n), self%normal(3, 4*n), self%tangent(3, 4*n), self%turning(3, 4*n))
+         allocate (self%first(n + 1), self%gap(n), self%facing(n), self%bend(n), stat=status)
+         call check_allocation(status)
+         allocate (self%weight(n), self%at_rest(n), stat=status)
+         call check_allocation(status)
+         allocate (self%direction(3, n), self%along(3, n), stat=status)
+         call check_allocation(status)
+         allocate (self%node(4*n), self%normal(3, 4*n), stat=status)
+         call check_allocation(status)
+         allocate (self%tangent(3, 4*n), self%turning(3, 4*n), stat=status)
+         call check_allocation(status)
       end if
       self%n = n
       self%first = 1
@@ -87,8 +95,10 @@ contains
       pure subroutine double(vectors)
          real(wp), allocatable, intent(inout) :: vectors(:, :)
          real(wp), allocatable :: longer(:, :)
+         integer :: status
 
-         allocate (longer(3, 2*n + 1))
+         allocate (longer(3, 2*n + 1), stat=status)
+         call check_allocation(status)
          longer(:, :n) = vectors
          call move_alloc(longer, vectors)
       end subroutine double

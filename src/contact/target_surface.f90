@@ -4,6 +4,7 @@
 module target_surface
    use kinds, only: int64, wp
    use state_archive, only: archive_type
+   use memory_shortage, only: check_allocation
    use segment_projection, only: edge_frame
    use edge_bins, only: edge_bins_type, find_in_box, new_bins
    implicit none
@@ -53,14 +54,15 @@ contains
       integer, intent(in) :: edges(:, :)         !! (3, n): the ends, the middle node or 0
       integer, intent(in) :: n_nodes             !! of the model
       integer, intent(in), optional :: element(:)   !! (n)
-      integer :: e, i, n
+      integer :: e, i, n, status
 
       n = size(edges, 2)
       self%edges = edges
       self%n_edge_nodes = merge(3, 2, edges(3, :) > 0)
       self%element = [(0, e=1, n)]
       if (present(element)) self%element = element
-      allocate (self%leaving(n_nodes), self%arriving(n_nodes), source=0)
+      allocate (self%leaving(n_nodes), self%arriving(n_nodes), source=0, stat=status)
+      call check_allocation(status)
       do e = n, 1, -1
          self%leaving(edges(1, e)) = e
          self%arriving(edges(2, e)) = e
@@ -68,7 +70,8 @@ contains
          self%leaving(edges(3, e)) = e
          self%arriving(edges(3, e)) = e
       end do
-      allocate (self%next(n), self%previous(n), self%found(n), source=0)
+      allocate (self%next(n), self%previous(n), self%found(n), source=0, stat=status)
+      call check_allocation(status)
       do e = 1, n
          i = self%leaving(edges(2, e))
          if (self%arriving(edges(2, e)) == e) self%next(e) = i
@@ -76,7 +79,8 @@ contains
          if (self%leaving(edges(1, e)) == e) self%previous(e) = i
       end do
       self%nodes = pack([(i, i=1, n_nodes)], self%leaving + self%arriving > 0)
-      allocate (self%built(2, size(self%nodes)), source=0.0_wp)
+      allocate (self%built(2, size(self%nodes)), source=0.0_wp, stat=status)
+      call check_allocation(status)
    end subroutine new_target
 
    !> Takes the positions of a step; to be called whenever they have changed. The bins are built
@@ -136,10 +140,11 @@ contains
       real(wp), intent(in) :: x_now(:, :)
       real(wp), intent(in) :: reach
       real(wp), allocatable :: low(:, :), high(:, :)
-      integer :: e
+      integer :: e, status
       real(wp) :: box(2, 2), least
 
-      allocate (low(2, size(self%edges, 2)), high(2, size(self%edges, 2)))
+      allocate (low(2, size(self%edges, 2)), high(2, size(self%edges, 2)), stat=status)
+      call check_allocation(status)
       do e = 1, size(self%edges, 2)
          box = edge_box(self, e, x_now)
          low(:, e) = box(:, 1)

@@ -17,6 +17,7 @@
 !> than the reach.
 module weighted_rows
    use kinds, only: wp
+   use memory_shortage, only: check_allocation
    use segment_projection, only: closest_on_edge, cut_edge, edge_functions
    use target_surface, only: edge_coordinates, target_type
    use edge_overlap, only: find_breaks, find_opposite, set_slave_edge, slave_edge_type
@@ -72,14 +73,20 @@ contains
       type(slave_edge_type) :: edge
       integer, allocatable :: place(:), ends(:)
       real(wp), allocatable :: breaks(:)
-      integer :: e, i, n
+      integer :: e, i, n, status
 
       n = size(slave%nodes)
-      allocate (sums%whole(n), sums%weight(n), sums%gap(n), sums%normal(2, n), source=0.0_wp)
-      allocate (sums%owner(16*n), sums%node(16*n), sums%coefficient(2, 16*n))
-      allocate (sums%at_end(16*n), sums%end_gap(16*n))
-      allocate (breaks(2*size(target%edges, 2) + 2), ends(2*size(target%edges, 2) + 2))
-      allocate (place(size(slave%leaving)), source=0)
+      allocate (sums%whole(n), sums%weight(n), sums%gap(n), sums%normal(2, n), source=0.0_wp, &
+            stat=status)
+      call check_allocation(status)
+      allocate (sums%owner(16*n), sums%node(16*n), sums%coefficient(2, 16*n), stat=status)
+      call check_allocation(status)
+      allocate (sums%at_end(16*n), sums%end_gap(16*n), stat=status)
+      call check_allocation(status)
+      allocate (breaks(2*size(target%edges, 2) + 2), ends(2*size(target%edges, 2) + 2), stat=status)
+      call check_allocation(status)
+      allocate (place(size(slave%leaving)), source=0, stat=status)
+      call check_allocation(status)
       place(slave%nodes) = [(i, i=1, n)]
       do e = 1, size(slave%edges, 2)
          call set_slave_edge(edge, slave, e, x_now, reach, target)
@@ -249,10 +256,14 @@ contains
       integer, allocatable :: owner(:), node(:)
       real(wp), allocatable :: coefficient(:, :), end_gap(:)
       logical, allocatable :: at_end(:)
+      integer :: status
 
-      allocate (owner(2*size(sums%owner)), node(2*size(sums%owner)))
-      allocate (coefficient(2, 2*size(sums%owner)), end_gap(2*size(sums%owner)))
-      allocate (at_end(2*size(sums%owner)))
+      allocate (owner(2*size(sums%owner)), node(2*size(sums%owner)), stat=status)
+      call check_allocation(status)
+      allocate (coefficient(2, 2*size(sums%owner)), end_gap(2*size(sums%owner)), stat=status)
+      call check_allocation(status)
+      allocate (at_end(2*size(sums%owner)), stat=status)
+      call check_allocation(status)
       at_end(:sums%n) = sums%at_end(:sums%n)
       end_gap(:sums%n) = sums%end_gap(:sums%n)
       owner(:sums%n) = sums%owner(:sums%n)
@@ -272,12 +283,13 @@ contains
       real(wp), intent(in) :: reach
       type(weighted_rows_type), intent(out) :: rows
       integer, allocatable :: first(:), order(:), row(:)
-      integer :: i, j, n, n_terms
+      integer :: i, j, n, n_terms, status
       real(wp) :: normal(2), tangent(2)
 
       n = size(slave%nodes)
       call sort_by_owner(sums, n, first, order)
-      allocate (row(0))
+      allocate (row(0), stat=status)
+      call check_allocation(status)
       row = pack([(i, i=1, n)], sums%weight >= least_cover*sums%whole .and. sums%weight > 0.0_wp &
             .and. sums%gap <= reach*sums%weight)
       rows%n = size(row)
@@ -285,8 +297,11 @@ contains
       rows%weight = sums%weight(row)
       rows%gap = sums%gap(row)/sums%weight(row)
       rows%normal = sums%normal(:, row)
-      allocate (rows%first(rows%n + 1), rows%node(sums%n), rows%normal_coefficient(2, sums%n))
-      allocate (rows%tangent_coefficient(2, sums%n))
+      allocate (rows%first(rows%n + 1), rows%node(sums%n), rows%normal_coefficient(2, sums%n), &
+            stat=status)
+      call check_allocation(status)
+      allocate (rows%tangent_coefficient(2, sums%n), stat=status)
+      call check_allocation(status)
       n_terms = 0
       do i = 1, rows%n
          rows%first(i) = n_terms + 1
@@ -312,10 +327,12 @@ contains
       type(sums_type), intent(in) :: sums
       integer, intent(in) :: n
       integer, allocatable, intent(out) :: first(:), order(:)
-      integer :: i
+      integer :: i, status
 
-      allocate (first(n + 1), source=0)
-      allocate (order(sums%n))
+      allocate (first(n + 1), source=0, stat=status)
+      call check_allocation(status)
+      allocate (order(sums%n), stat=status)
+      call check_allocation(status)
       do i = 1, sums%n
          first(sums%owner(i)) = first(sums%owner(i)) + 1
       end do

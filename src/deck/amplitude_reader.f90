@@ -2,11 +2,11 @@
 module amplitude_reader
    use kinds, only: wp
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use places, only: fail_at
    use properties, only: name_length
    use histories, only: time_step, time_total
    use model, only: model_type
-   use model_building, only: find_named
    use cards, only: deck_type, card_type, count_cards, get_word, get_name_parameter, parameter_place
    use fields, only: fields_type, split_line, check_count, field_place, get_real
    use words, only: word_length, advice
@@ -21,9 +21,10 @@ contains
       type(model_type), intent(inout) :: model
       type(deck_type), intent(in) :: deck
       type(error_type), allocatable, intent(out) :: error
-      integer :: i, n
+      integer :: i, n, status
 
-      allocate (model%amplitudes(count_cards(deck, 'AMPLITUDE')))
+      allocate (model%amplitudes(count_cards(deck, 'AMPLITUDE')), stat=status)
+      call check_allocation(status)
       n = 0
       do i = 1, deck%n_cards
          if (deck%cards(i)%keyword /= 'AMPLITUDE') cycle
@@ -42,24 +43,26 @@ contains
       character(len=word_length), parameter :: times(*) = [character(len=word_length) :: &
             'STEP TIME', 'TOTAL TIME']
       type(fields_type) :: fields
-      integer :: choice, line, k
+      integer :: choice, line, k, status
 
       associate (amplitude => model%amplitudes(n))
          call get_name_parameter(card, 'NAME', amplitude%name, model%source, error)
          if (allocated(error)) return
-         if (find_named(model%amplitudes(:n - 1), amplitude%name) > 0) then
+         if (model%amplitude_of%find(amplitude%name) > 0) then
             call fail_at(error, model%source, parameter_place(card, 'NAME'), &
                   "amplitude '"//trim(amplitude%name)//"' is defined twice", &
                   cure='give every amplitude its own name')
             return
          end if
+         call model%amplitude_of%insert(amplitude%name, n)
          call get_word(card, 'TIME', times, choice, model%source, error)
          if (allocated(error)) return
          amplitude%time = time_step
          if (choice == 2) amplitude%time = time_total
          amplitude%place = card%place
          k = 4*(card%last - card%first + 1)
-         allocate (amplitude%t(k), amplitude%a(k))
+         allocate (amplitude%t(k), amplitude%a(k), stat=status)
+         call check_allocation(status)
       end associate
       k = 0
       do line = card%first, card%last
@@ -119,7 +122,7 @@ contains
       amplitude = 0
       call get_name_parameter(card, 'AMPLITUDE', name, model%source, error)
       if (allocated(error) .or. name == '') return
-      amplitude = find_named(model%amplitudes, name)
+      amplitude = model%amplitude_of%find(name)
       if (amplitude == 0) call fail_at(error, model%source, parameter_place(card, 'AMPLITUDE'), &
             'no such amplitude: '//trim(name), &
             cure='define it with *AMPLITUDE; '//advice(name, [model%amplitudes%name]))

@@ -1,6 +1,7 @@
 !> The one list of keywords: where each may stand, its parameters, what its data lines hold.
 module card_rules
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use places, only: place_type, source_type, fail_at
    use words, only: word_length, squeezed, find_word, advice
    use cards, only: card_type, parameter_type, has_parameter
@@ -123,6 +124,10 @@ contains
       type(error_type), allocatable, intent(out) :: error
       integer :: i
 
+      do i = 2, size(card%parameters)
+         call check_twin(card, i, source, error)
+         if (allocated(error)) return
+      end do
       if (is_note_card(card%rule)) return
       call check_level(card, source, error)
       if (allocated(error)) return
@@ -159,7 +164,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       character(len=word_length), allocatable :: list(:)
       character(len=:), allocatable :: marks, continued
-      integer :: j, k
+      integer :: k
 
       continued = ''
       list = parameter_names(card%rule)
@@ -172,12 +177,6 @@ contains
                   "' of "//name_of(card%rule), cure=advice(given%name, list)//continued)
             return
          end if
-         do j = 1, i - 1
-            if (card%parameters(j)%name /= given%name) cycle
-            call fail_at(error, source, given%place, given%name//' is given twice on this card', &
-                  cure='keep one of the two')
-            return
-         end do
          marks = parameter_marks(card%rule, k)
          if (index(marks, '~') > 0) then
             call fail_at(error, source, given%place, trim(list(k))// &
@@ -190,6 +189,24 @@ contains
          end if
       end associate
    end subroutine check_parameter
+
+   !> A parameter is given once.
+   pure subroutine check_twin(card, i, source, error)
+      type(card_type), intent(in) :: card
+      integer, intent(in) :: i
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      integer :: j
+
+      associate (given => card%parameters(i))
+         do j = 1, i - 1
+            if (card%parameters(j)%name /= given%name) cycle
+            call fail_at(error, source, given%place, given%name//' is given twice on this card', &
+                  cure='keep one of the two')
+            return
+         end do
+      end associate
+   end subroutine check_twin
 
    pure subroutine require_value(given, source, error)
       type(parameter_type), intent(in) :: given
@@ -268,10 +285,11 @@ contains
       integer, intent(in) :: rule
       character(len=word_length), allocatable :: list(:)
       character(len=word_length) :: word
-      integer :: k, n
+      integer :: k, n, status
 
       n = parameter_count(rule)
-      allocate (list(n))
+      allocate (list(n), stat=status)
+      call check_allocation(status)
       do k = 1, n
          word = parameter_word(rule, k)
          if (word(1:1) == '~') word = word(2:)

@@ -9,6 +9,7 @@ module dynamic_reader
    use cards, only: card_type, get_real_parameter, parameter_place, has_parameter
    use order_reader, only: read_order
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -117,9 +118,10 @@ contains
       type(model_type), intent(in) :: model
       integer :: e
       logical, allocatable :: implicit_one(:)
-      integer :: i
+      integer :: i, status
 
-      allocate (implicit_one(model%elements%n))
+      allocate (implicit_one(model%elements%n), stat=status)
+      call check_allocation(status)
       do e = 1, model%elements%n
          implicit_one(e) = all(model%elements%kind(e) /= [element_mass, element_gap, element_line])
       end do

@@ -11,6 +11,7 @@ module equation_reader
    use fields, only: get_integer, get_real
    use spring_reader, only: get_dof
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -24,14 +25,15 @@ contains
       type(deck_type), intent(in) :: deck
       type(error_type), allocatable, intent(out) :: error
       type(equation_type), allocatable :: equations(:)
-      integer :: i, n, line
+      integer :: i, n, line, status
 
       n = 0
       do i = 1, deck%n_cards
          if (deck%cards(i)%keyword /= 'EQUATION') cycle
          n = n + deck%cards(i)%last - deck%cards(i)%first + 1
       end do
-      allocate (equations(n))
+      allocate (equations(n), stat=status)
+      call check_allocation(status)
       n = 0
       do i = 1, deck%n_cards
          if (deck%cards(i)%keyword /= 'EQUATION') cycle
@@ -54,7 +56,7 @@ contains
       integer, intent(inout) :: line   !! that of the number in, the one behind the last term out
       type(error_type), allocatable, intent(out) :: error
       type(fields_type) :: fields
-      integer :: n_terms, n_read
+      integer :: n_terms, n_read, status
 
       call split_line(fields, deck, card, line, model%source, error)
       if (allocated(error)) return
@@ -69,7 +71,9 @@ contains
                cure='write the number, 2 or more, then as many triples node, dof, coefficient')
          return
       end if
-      allocate (equation%node(n_terms), equation%dof(n_terms), equation%coefficient(n_terms))
+      allocate (equation%node(n_terms), equation%dof(n_terms), equation%coefficient(n_terms), &
+            stat=status)
+      call check_allocation(status)
       n_read = 0
       line = line + 1
       do while (n_read < n_terms)

@@ -7,9 +7,10 @@ module fields
    use words, only: squeezed, is_blank
    use numbers, only: parse_integer, parse_real
    use cards, only: deck_type, card_type, check_name
-   use symbols, only: substitute
+   use symbols, only: substitute, add_text
    use card_rules, only: usage_of
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -69,13 +70,16 @@ contains
       type(fields_type), intent(inout) :: fields
       integer, intent(in) :: start, finish
       integer, allocatable :: room(:, :)
-      integer :: first, last, n
+      integer :: first, last, n, status
 
       n = fields%n + 1
-      if (.not. allocated(fields%first)) allocate (fields%first(8), fields%last(8), &
-            fields%column(8), fields%width(8))
+      if (.not. allocated(fields%first)) then
+         allocate (fields%first(8), fields%last(8), fields%column(8), fields%width(8), stat=status)
+         call check_allocation(status)
+      end if
       if (n > size(fields%first)) then
-         allocate (room(n, 4), source=0)
+         allocate (room(n, 4), source=0, stat=status)
+         call check_allocation(status)
          fields%first = [fields%first, room(:, 1)]
          fields%last = [fields%last, room(:, 2)]
          fields%column = [fields%column, room(:, 3)]
@@ -108,18 +112,19 @@ contains
       type(source_type), intent(in) :: source
       type(error_type), allocatable, intent(out) :: error
       character(len=:), allocatable :: new_text, piece
-      integer :: i
+      integer :: i, length
 
       new_text = ''
+      length = 0
       do i = 1, fields%n
          call substitute(deck, fields%text(fields%first(i):fields%last(i)), &
                field_place(fields, i), piece, source, error)
          if (allocated(error)) return
-         fields%first(i) = len(new_text) + 1
-         new_text = new_text//piece
-         fields%last(i) = len(new_text)
+         fields%first(i) = length + 1
+         call add_text(new_text, length, piece)
+         fields%last(i) = length
       end do
-      call move_alloc(new_text, fields%text)
+      fields%text = new_text(:length)
    end subroutine substitute_fields
 
    !> Place of field i, which may be missing.

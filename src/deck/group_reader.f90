@@ -11,6 +11,7 @@ module group_reader
    use set_reader, only: find_element_set
    use words, only: word_length
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -23,10 +24,12 @@ contains
       type(deck_type), intent(in) :: deck
       type(error_type), allocatable, intent(out) :: error
       integer, allocatable :: group_of(:)   !! (elements) index of the group, 0 for none
-      integer :: i, n
+      integer :: i, n, status
 
-      allocate (model%groups(count_cards(deck, 'ELEMENTGROUP')))
-      allocate (group_of(model%elements%n), source=0)
+      allocate (model%groups(count_cards(deck, 'ELEMENTGROUP')), stat=status)
+      call check_allocation(status)
+      allocate (group_of(model%elements%n), source=0, stat=status)
+      call check_allocation(status)
       n = 0
       do i = 1, deck%n_cards
          if (deck%cards(i)%keyword /= 'ELEMENTGROUP') cycle

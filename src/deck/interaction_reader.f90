@@ -2,12 +2,12 @@
 module interaction_reader
    use kinds, only: wp
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use places, only: source_type, fail_at, note_at
    use surfaces, only: interaction_type, method_transformation, method_fictitious_force
    use surfaces, only: method_penalty, method_lagrange, beta_given
    use properties, only: section_gap
    use model, only: model_type
-   use model_building, only: find_named
    use cards, only: deck_type, card_type, count_cards, get_word, get_real_parameter
    use cards, only: get_name_parameter, get_integer_parameter, parameter_place, has_parameter
    use cards, only: parameter_index
@@ -34,9 +34,10 @@ contains
       type(model_type), intent(inout) :: model
       type(deck_type), intent(in) :: deck
       type(error_type), allocatable, intent(out) :: error
-      integer :: i, n, with_friction
+      integer :: i, n, with_friction, status
 
-      allocate (model%interactions(count_cards(deck, 'SURFACEINTERACTION')))
+      allocate (model%interactions(count_cards(deck, 'SURFACEINTERACTION')), stat=status)
+      call check_allocation(status)
       n = 0
       with_friction = 0
       do i = 1, deck%n_cards
@@ -83,7 +84,10 @@ contains
       call get_name_parameter(card, 'NAME', model%interactions(n)%name, model%source, error)
       if (allocated(error)) return
       model%interactions(n)%place = card%place
-      if (find_named(model%interactions(:n - 1), model%interactions(n)%name) == 0) return
+      if (model%interaction_of%find(model%interactions(n)%name) == 0) then
+         call model%interaction_of%insert(model%interactions(n)%name, n)
+         return
+      end if
       call fail_at(error, model%source, parameter_place(card, 'NAME'), "surface interaction '"// &
             trim(model%interactions(n)%name)//"' is defined twice", &
             cure='give every interaction its own name')
@@ -281,9 +285,10 @@ contains
       type(model_type), intent(inout) :: model
       type(error_type), allocatable, intent(out) :: error
       logical, allocatable :: used(:)
-      integer :: i, first
+      integer :: i, first, status
 
-      allocate (used(size(model%interactions)), source=.false.)
+      allocate (used(size(model%interactions)), source=.false., stat=status)
+      call check_allocation(status)
       do i = 1, size(model%pairs)
          used(model%pairs(i)%interaction) = .true.
       end do

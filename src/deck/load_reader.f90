@@ -18,6 +18,7 @@ module load_reader
    use element_types, only: kind_name
    use words, only: word_length, find_word, advice
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -45,15 +46,16 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(fields_type) :: fields
       type(own_sets_type) :: own
-      integer :: i, n, n_gravity, line, amplitude
+      integer :: i, n, n_gravity, line, amplitude, status
 
       n = count_lines(deck, 'DLOAD', step)
-      allocate (gravity(n), distributed(n))
+      allocate (gravity(n), distributed(n), stat=status)
+      call check_allocation(status)
       call find_own_sets(own, model%element_sets)
       call reserve_sets(model%element_sets, n)
       n = 0
       n_gravity = 0
-      do i = 1, deck%n_cards
+      do i = deck%first_card(step), deck%last_card(step)
          if (deck%cards(i)%keyword /= 'DLOAD' .or. deck%cards(i)%step /= step) cycle
          call find_amplitude(model, deck%cards(i), amplitude, error)
          if (allocated(error)) return
@@ -96,14 +98,16 @@ contains
       type(set_type), allocatable, intent(inout) :: sets(:)
       integer, intent(in) :: n_more
       type(set_type), allocatable :: longer(:)
-      integer :: i
+      integer :: i, status
 
       if (n_more == 0) return
-      allocate (longer(size(sets) + n_more))
+      allocate (longer(size(sets) + n_more), stat=status)
+      call check_allocation(status)
       do i = 1, size(longer)
          if (i > size(sets)) then
             longer(i)%name = 'element'
-            allocate (longer(i)%members(0))
+            allocate (longer(i)%members(0), stat=status)
+            call check_allocation(status)
          else
             longer(i)%name = sets(i)%name
             longer(i)%place = sets(i)%place
@@ -276,7 +280,7 @@ contains
       integer :: i
 
       n = 0
-      do i = 1, deck%n_cards
+      do i = deck%first_card(step), deck%last_card(step)
          if (deck%cards(i)%keyword == keyword .and. deck%cards(i)%step == step) then
             n = n + deck%cards(i)%last - deck%cards(i)%first + 1
          end if
@@ -315,15 +319,16 @@ contains
       type(deck_type), intent(in) :: deck
       integer, intent(in) :: step
       type(error_type), allocatable, intent(out) :: error
-      integer :: i, n
+      integer :: i, n, status
 
       n = 0
-      do i = 1, deck%n_cards
+      do i = deck%first_card(step), deck%last_card(step)
          if (deck%cards(i)%keyword == 'BASEMOTION' .and. deck%cards(i)%step == step) n = n + 1
       end do
-      allocate (list(n))
+      allocate (list(n), stat=status)
+      call check_allocation(status)
       n = 0
-      do i = 1, deck%n_cards
+      do i = deck%first_card(step), deck%last_card(step)
          if (deck%cards(i)%keyword /= 'BASEMOTION' .or. deck%cards(i)%step /= step) cycle
          n = n + 1
          call read_base_motion(list(n), model, deck, deck%cards(i), error)

@@ -2,10 +2,10 @@
 module material_reader
    use kinds, only: wp
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use places, only: source_type, fail_at
    use properties, only: material_type, table_type
    use model, only: model_type
-   use model_building, only: find_named
    use cards, only: deck_type, card_type, count_cards, get_word, get_real_parameter
    use cards, only: get_name_parameter, parameter_place
    use words, only: word_length
@@ -23,9 +23,10 @@ contains
       type(model_type), intent(inout) :: model
       type(deck_type), intent(in) :: deck
       type(error_type), allocatable, intent(out) :: error
-      integer :: i, n
+      integer :: i, n, status
 
-      allocate (model%materials(count_cards(deck, 'MATERIAL')))
+      allocate (model%materials(count_cards(deck, 'MATERIAL')), stat=status)
+      call check_allocation(status)
       n = 0
       do i = 1, deck%n_cards
          select case (deck%cards(i)%keyword)
@@ -66,7 +67,10 @@ contains
       call get_name_parameter(card, 'NAME', model%materials(n)%name, model%source, error)
       if (allocated(error)) return
       model%materials(n)%place = card%place
-      if (find_named(model%materials(:n - 1), model%materials(n)%name) == 0) return
+      if (model%material_of%find(model%materials(n)%name) == 0) then
+         call model%material_of%insert(model%materials(n)%name, n)
+         return
+      end if
       call fail_at(error, model%source, parameter_place(card, 'NAME'), &
             "material '"//trim(model%materials(n)%name)//"' is defined twice", &
             cure='give every material its own name')
@@ -142,7 +146,7 @@ contains
             'ISOTROPIC', 'KINEMATIC', '~COMBINED']
       type(fields_type) :: fields
       real(wp) :: values(2)
-      integer :: choice, line, n
+      integer :: choice, line, n, status
 
       if (material%has_plastic) then
          call fail_at(error, source, card%place, 'this material has *PLASTIC already', &
@@ -155,7 +159,8 @@ contains
       material%kinematic = choice == 2
       n = card%last - card%first + 1
       material%hardening%n = n
-      allocate (material%hardening%x(n), material%hardening%y(n))
+      allocate (material%hardening%x(n), material%hardening%y(n), stat=status)
+      call check_allocation(status)
       do line = card%first, card%last
          call split_line(fields, deck, card, line, source, error)
          if (allocated(error)) return

@@ -11,6 +11,7 @@ module mesh_reader
    use plain_lines, only: scan_integers, scan_point
    use element_types, only: type_names, kinds_of_types, nodes_of_types, most_nodes
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -24,11 +25,12 @@ contains
       type(deck_type), intent(inout) :: deck
       type(error_type), allocatable, intent(out) :: error
       type(fields_type) :: fields
-      integer :: i, j, n
+      integer :: i, j, n, status
       logical :: done
 
       n = count_lines(deck, 'NODE')
-      allocate (model%nodes%id(n), model%nodes%x(3, n), model%nodes%place(n))
+      allocate (model%nodes%id(n), model%nodes%x(3, n), model%nodes%place(n), stat=status)
+      call check_allocation(status)
       do i = 1, deck%n_cards
          if (deck%cards(i)%keyword /= 'NODE') cycle
          deck%cards(i)%first_item = model%nodes%n + 1
@@ -108,13 +110,15 @@ contains
       type(model_type), intent(inout) :: model
       type(deck_type), intent(inout) :: deck
       type(error_type), allocatable, intent(out) :: error
-      integer :: i, n, n_nodes
+      integer :: i, n, n_nodes, status
 
       n = count_lines(deck, 'ELEMENT')
       call count_nodes(model, deck, n_nodes, error)
       if (allocated(error)) return
-      allocate (model%elements%id(n), model%elements%kind(n), model%elements%place(n))
-      allocate (model%elements%first(n + 1), model%elements%nodes(n_nodes))
+      allocate (model%elements%id(n), model%elements%kind(n), model%elements%place(n), stat=status)
+      call check_allocation(status)
+      allocate (model%elements%first(n + 1), model%elements%nodes(n_nodes), stat=status)
+      call check_allocation(status)
       model%elements%first(1) = 1
       do i = 1, deck%n_cards
          if (deck%cards(i)%keyword /= 'ELEMENT') cycle
@@ -124,7 +128,8 @@ contains
          deck%cards(i)%last_item = model%elements%n
       end do
       if (model%elements%n < n) call cut_to_size(model%elements)
-      allocate (model%elements%section(model%elements%n), source=0)
+      allocate (model%elements%section(model%elements%n), source=0, stat=status)
+      call check_allocation(status)
    end subroutine read_elements
 
    !> Gives back what was kept for the lines that only go on with an element.

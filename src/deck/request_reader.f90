@@ -2,6 +2,7 @@
 module request_reader
    use kinds, only: wp
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use places, only: source_type, fail_at, note_at
    use properties, only: name_length
    use steps, only: request_type, n_quantities, procedure_frequency
@@ -47,18 +48,19 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(request_type), allocatable :: requests(:)
       type(request_type) :: request
-      integer :: i, n, n_old, before
+      integer :: i, n, n_old, before, status
 
       n_old = 0
       before = step_before(model, step)
       if (before > 0) n_old = size(model%steps(before)%requests)
       n = 0
-      do i = 1, deck%n_cards
+      do i = deck%first_card(step), deck%last_card(step)
          if (deck%cards(i)%step == step .and. kind_of(deck%cards(i)%keyword) > 0) n = n + 1
       end do
-      allocate (requests(n + n_old))
+      allocate (requests(n + n_old), stat=status)
+      call check_allocation(status)
       n = 0
-      do i = 1, deck%n_cards
+      do i = deck%first_card(step), deck%last_card(step)
          if (deck%cards(i)%step /= step .or. kind_of(deck%cards(i)%keyword) == 0) cycle
          call read_request(request, model, deck, deck%cards(i), error)
          if (allocated(error)) return

@@ -9,7 +9,6 @@ module section_reader
    use mesh, only: element_dashpot1, element_dashpot2, element_dashpota, element_truss, element_gap
    use mesh, only: element_line
    use model, only: model_type
-   use model_building, only: find_named
    use cards, only: deck_type, card_type, get_name_parameter, parameter_place
    use fields, only: fields_type, only_line, field_place, get_reals
    use spring_reader, only: read_spring
@@ -20,6 +19,7 @@ module section_reader
    use source_reader, only: add_note
    use words, only: advice
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -33,9 +33,10 @@ contains
       type(deck_type), intent(in) :: deck
       type(error_type), allocatable, intent(out) :: error
       type(section_type) :: section
-      integer :: i, n
+      integer :: i, n, status
 
-      allocate (model%sections(count_sections(deck)))
+      allocate (model%sections(count_sections(deck)), stat=status)
+      call check_allocation(status)
       n = 0
       do i = 1, deck%n_cards
          if (section_kind(deck%cards(i)%keyword) == 0) cycle
@@ -205,7 +206,7 @@ contains
 
       call get_name_parameter(card, 'INTERACTION', name, model%source, error)
       if (allocated(error)) return
-      section%interaction = find_named(model%interactions, name)
+      section%interaction = model%interaction_of%find(name)
       if (section%interaction == 0) then
          call fail_at(error, model%source, parameter_place(card, 'INTERACTION'), &
                'no such surface interaction: '//trim(name), &

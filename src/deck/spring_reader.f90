@@ -9,6 +9,7 @@ module spring_reader
    use fields, only: fields_type, split_line, check_count, field_place, is_given
    use fields, only: get_integer, get_reals
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -25,9 +26,10 @@ contains
       type(source_type), intent(in) :: source
       type(error_type), allocatable, intent(out) :: error
       logical, allocatable :: axial(:)
-      integer :: line
+      integer :: line, status
 
-      allocate (axial(size(kinds)))
+      allocate (axial(size(kinds)), stat=status)
+      call check_allocation(status)
       axial = kinds == element_springa .or. kinds == element_dashpota
       if (any(axial) .and. .not. all(axial)) then
          call fail_at(error, source, parameter_place(card, 'ELSET'), &
@@ -36,7 +38,10 @@ contains
          return
       end if
       line = card%first
-      if (.not. any(axial)) then
+      if (any(axial)) then
+         call skip_empty(line, deck, card, source, error)
+         if (allocated(error)) return
+      else
          call read_directions(section, deck, card, kinds, source, error)
          if (allocated(error)) return
          line = line + 1
@@ -48,6 +53,21 @@ contains
          call read_coefficient(section, deck, card, line, source, error)
       end if
    end subroutine read_spring
+
+   !> A line of nothing but a comma may stand where other elements have their freedoms.
+   subroutine skip_empty(line, deck, card, source, error)
+      integer, intent(inout) :: line
+      type(deck_type), intent(in) :: deck
+      type(card_type), intent(in) :: card
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      type(fields_type) :: fields
+      integer :: k
+
+      call split_line(fields, deck, card, line, source, error)
+      if (allocated(error)) return
+      if (.not. any([(is_given(fields, k), k=1, fields%n)])) line = line + 1
+   end subroutine skip_empty
 
    !> The line with one or two freedoms; the second defaults to the first.
    subroutine read_directions(section, deck, card, kinds, source, error)
@@ -129,7 +149,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(fields_type) :: fields
       real(wp) :: values(2)
-      integer :: line, n
+      integer :: line, n, status
 
       n = card%last - first + 1
       if (n < 2) then
@@ -138,7 +158,8 @@ contains
                cure='write lines of force, elongation')
          return
       end if
-      allocate (section%force%x(n), section%force%y(n))
+      allocate (section%force%x(n), section%force%y(n), stat=status)
+      call check_allocation(status)
       section%force%n = n
       do line = first, card%last
          n = line - first + 1

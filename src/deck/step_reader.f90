@@ -2,6 +2,7 @@
 module step_reader
    use kinds, only: wp
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use places, only: source_type, fail_at
    use steps, only: step_type, procedure_static, procedure_dynamic, procedure_frequency, &
          solver_mumps
@@ -27,11 +28,11 @@ contains
       type(model_type), intent(inout) :: model
       type(deck_type), intent(in) :: deck
       type(error_type), allocatable, intent(out) :: error
-      integer :: s, n
+      integer :: s, n, status
 
-      n = 0
-      if (deck%n_cards > 0) n = maxval(deck%cards(:deck%n_cards)%step)
-      allocate (model%steps(n))
+      n = ubound(deck%first_card, 1)
+      allocate (model%steps(n), stat=status)
+      call check_allocation(status)
       do s = 1, n
          call read_step(model, s, deck, error)
          if (allocated(error)) return
@@ -86,7 +87,7 @@ contains
       integer :: i, n
 
       n = 0
-      do i = 1, deck%n_cards
+      do i = deck%first_card(s), deck%last_card(s)
          if (deck%cards(i)%step /= s) cycle
          select case (deck%cards(i)%keyword)
          case ('STEP')
@@ -118,7 +119,7 @@ contains
             'CLOAD', 'DLOAD', 'BASE MOTION', 'INITIAL CONDITIONS']
       integer :: i, k
 
-      do i = 1, deck%n_cards
+      do i = deck%first_card(s), deck%last_card(s)
          if (deck%cards(i)%step /= s) cycle
          k = find_word(deck%cards(i)%keyword, loads)
          if (k == 0) cycle
@@ -283,7 +284,7 @@ contains
 
       is_new = .false.
       n = 0
-      do i = 1, deck%n_cards
+      do i = deck%first_card(s), deck%last_card(s)
          if (deck%cards(i)%step /= s .or. deck%cards(i)%keyword /= keyword) cycle
          call get_word(deck%cards(i), 'OP', ops, choice, model%source, error)
          if (allocated(error)) return

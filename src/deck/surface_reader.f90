@@ -1,11 +1,12 @@
 !> `*SURFACE` and `*RIGID SURFACE`: what may touch.
 module surface_reader
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use places, only: fail_at
    use properties, only: name_length
    use element_sides, only: side_finder_type
    use model, only: model_type
-   use model_building, only: find_named, append, fit, sort_unique
+   use model_building, only: append, fit, sort_unique
    use cards, only: deck_type, card_type, count_cards, get_word, get_name_parameter
    use cards, only: parameter_place
    use fields, only: fields_type, split_line
@@ -27,10 +28,12 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(side_finder_type) :: finder
       character(len=name_length) :: name
-      integer :: i, n, n_rigid
+      integer :: i, n, n_rigid, status
 
-      allocate (model%surfaces(count_cards(deck, 'SURFACE')))
-      allocate (model%rigid_surfaces(count_cards(deck, 'RIGIDSURFACE')))
+      allocate (model%surfaces(count_cards(deck, 'SURFACE')), stat=status)
+      call check_allocation(status)
+      allocate (model%rigid_surfaces(count_cards(deck, 'RIGIDSURFACE')), stat=status)
+      call check_allocation(status)
       n = 0
       n_rigid = 0
       do i = 1, deck%n_cards
@@ -43,6 +46,7 @@ contains
             call get_new_name(model, deck%cards(i), name, error)
             if (allocated(error)) return
             model%rigid_surfaces(n_rigid)%name = name
+            call model%rigid_surface_of%insert(name, n_rigid)
             model%rigid_surfaces(n_rigid)%place = deck%cards(i)%place
             call read_rigid_surface(model, n_rigid, deck, deck%cards(i), error)
          case default
@@ -61,7 +65,7 @@ contains
 
       call get_name_parameter(card, 'NAME', name, model%source, error)
       if (allocated(error)) return
-      if (find_named(model%surfaces, name) + find_named(model%rigid_surfaces, name) == 0) return
+      if (model%surface_of%find(name) + model%rigid_surface_of%find(name) == 0) return
       call fail_at(error, model%source, parameter_place(card, 'NAME'), &
             "surface '"//trim(name)//"' is defined twice", cure='give every surface its own name')
    end subroutine get_new_name
@@ -83,6 +87,7 @@ contains
       call get_word(card, 'TYPE', types, choice, model%source, error)
       if (allocated(error)) return
       model%surfaces(n)%name = name
+      call model%surface_of%insert(name, n)
       model%surfaces(n)%place = card%place
       if (choice == 2) then
          call read_surface_nodes(model, n, deck, card, error)
@@ -100,7 +105,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(fields_type) :: fields
       integer, allocatable :: nodes(:), more(:)
-      integer :: line, k, i, n_nodes
+      integer :: line, k, i, n_nodes, status
 
       n_nodes = 0
       do line = card%first, card%last
@@ -117,7 +122,8 @@ contains
       call fit(nodes, n_nodes)
       call sort_unique(nodes)
       call move_alloc(nodes, model%surfaces(n)%nodes)
-      allocate (model%surfaces(n)%edges(3, 0), model%surfaces(n)%edge_element(0))
+      allocate (model%surfaces(n)%edges(3, 0), model%surfaces(n)%edge_element(0), stat=status)
+      call check_allocation(status)
    end subroutine read_surface_nodes
 
 end module surface_reader

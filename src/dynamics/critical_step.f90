@@ -4,6 +4,7 @@
 !> their diagonal stiffness.
 module critical_step
    use kinds, only: wp
+   use memory_shortage, only: check_allocation
    use small_eigen, only: largest_eigenvalue, has_larger_eigenvalue
    use element_groups, only: group_type, group_mass
    use dof_map, only: dof_map_type
@@ -195,7 +196,7 @@ contains
       integer, intent(in) :: lm(:)               !! freedoms of the element
       real(wp), intent(in) :: matrix(:, :)
       type(folded_type), intent(inout) :: folded
-      integer :: rows(size(lm)), i, n_terms
+      integer :: rows(size(lm)), i, n_terms, status
       logical :: plain
 
       n_terms = 0
@@ -205,8 +206,10 @@ contains
       if (allocated(folded%equation)) then
          if (size(folded%equation) < n_terms) deallocate (folded%equation, folded%matrix)
       end if
-      if (.not. allocated(folded%equation)) allocate (folded%equation(n_terms), &
-            folded%matrix(n_terms, n_terms))
+      if (.not. allocated(folded%equation)) then
+         allocate (folded%equation(n_terms), folded%matrix(n_terms, n_terms), stat=status)
+         call check_allocation(status)
+      end if
       folded%n = 0
       plain = .true.
       do i = 1, size(lm)

@@ -3,6 +3,7 @@ module eigen_analysis
    use kinds, only: wp
    use errors, only: error_type, new_error, status_numerical
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    use skyline_matrix, only: skyline_type, profile_type
    use eigen_solver, only: eigen_type, find_eigenvalues, outcome_found, outcome_singular, &
          outcome_indefinite
@@ -44,7 +45,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(skyline_type) :: stiffness, mass
       type(eigen_type) :: eigen
-      integer :: i
+      integer :: i, status
 
       call assemble_sum(structure, profile, d, history, [0.0_wp, 0.0_wp, 1.0_wp], stiffness)
       call assemble_sum(structure, profile, d, history, [1.0_wp, 0.0_wp, 0.0_wp], mass)
@@ -60,7 +61,8 @@ contains
       modes%shift = eigen%sigma
       modes%n_factorizations = eigen%n_factorizations
       modes%condensed = eigen%condensed
-      allocate (modes%shape(structure%map%n_freedoms, modes%n))
+      allocate (modes%shape(structure%map%n_freedoms, modes%n), stat=status)
+      call check_allocation(status)
       do i = 1, modes%n
          modes%shape(:, i) = upright(expand(structure%map, eigen%x(:, i)))
       end do
@@ -88,9 +90,10 @@ contains
       type(structure_type), intent(in) :: structure
       type(modes_type), intent(inout) :: modes
       real(wp), dimension(structure%map%n_freedoms) :: translation, inertia
-      integer :: i, j
+      integer :: i, j, status
 
-      allocate (modes%effective_mass(3, modes%n))
+      allocate (modes%effective_mass(3, modes%n), stat=status)
+      call check_allocation(status)
       do i = 1, 3
          translation = merge(1.0_wp, 0.0_wp, structure%map%dof == i &
                .and. .not. structure%map%prescribed)

@@ -5,6 +5,7 @@ module equation_of_motion
    use cost_account, only: cost_type, enter, leave, charge, phase_elements, phase_solve, &
          phase_factor
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use mesh, only: scheme_implicit, scheme_explicit
    use skyline_matrix, only: profile_type, new_profile
    use dof_map, only: reduce, expand, follow_constraints
@@ -343,9 +344,10 @@ contains
       logical, intent(in) :: on_mass
       real(wp), intent(inout) :: forces(:, :)    !! (n_freedoms, n), then the motions
       real(wp), allocatable :: b(:, :)
-      integer :: j, outer
+      integer :: j, outer, status
 
-      allocate (b(self%structure%map%n_eq, size(forces, 2)))
+      allocate (b(self%structure%map%n_eq, size(forces, 2)), stat=status)
+      call check_allocation(status)
       do j = 1, size(b, 2)
          b(:, j) = reduce(self%structure%map, forces(:, j))
          if (on_mass) where (self%massless) b(:, j) = 0.0_wp

@@ -10,6 +10,7 @@ module explicit_motion
    use prescribed_motion, only: are_at_rest
    use motion_state, only: state_type, exchange
    use cost_account, only: enter, leave, phase_elements
+   use memory_shortage, only: check_allocation
    use equation_of_motion, only: system_type, count_updates
    use energy_ledger, only: ledger_type, record_found
    implicit none
@@ -55,7 +56,7 @@ contains
       type(explicit_motion_type), intent(out) :: self
       type(system_type), intent(in) :: system
       type(state_type), intent(in) :: state
-      integer :: g
+      integer :: g, status
 
       self%ready = .true.
       self%usable = is_explicit(system)
@@ -64,7 +65,8 @@ contains
       do g = 1, size(system%structure%groups)
          self%damped = self%damped .or. size(system%structure%groups(g)%damping) > 0
       end do
-      allocate (self%load(merge(size(state%d), 0, size(system%loads%loads) > 0)))
+      allocate (self%load(merge(size(state%d), 0, size(system%loads%loads) > 0)), stat=status)
+      call check_allocation(status)
       if (size(self%load) > 0) self%load = load_at(system%loads, size(self%load), state%t)
       call go_on_explicitly(self, system, state)
    end subroutine new_explicit_motion
@@ -74,16 +76,19 @@ contains
       type(explicit_motion_type), intent(inout) :: self
       type(system_type), intent(in) :: system
       type(state_type), intent(in) :: state
+      integer :: status
 
       if (.not. self%usable) return
       associate (mass => system%structure%lumped_mass)
-         allocate (self%inverse(size(mass)), self%force(size(mass)))
+         allocate (self%inverse(size(mass)), self%force(size(mass)), stat=status)
+         call check_allocation(status)
          where (system%structure%map%prescribed .or. .not. mass > 0.0_wp)
             self%inverse = 0.0_wp
          else where
             self%inverse = 1.0_wp/mass
          end where
-         allocate (self%change(merge(size(mass), 0, self%damped)))
+         allocate (self%change(merge(size(mass), 0, self%damped)), stat=status)
+         call check_allocation(status)
       end associate
       self%history = state%history
    end subroutine go_on_explicitly

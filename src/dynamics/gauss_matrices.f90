@@ -4,6 +4,8 @@ module gauss_matrices
    use kinds, only: wp, int64
    use errors, only: error_type
    use clock, only: seconds_now
+   use memory_shortage, only: check_allocation
+   use memory_shortage, only: check_allocation
    use skyline_matrix, only: profile_type, skyline_type, profile_entries
    use complex_skyline, only: complex_skyline_type, new_complex_skyline, column_values
    use structure, only: structure_type
@@ -91,10 +93,11 @@ contains
       real(wp), allocatable, intent(out) :: dt(:)
       logical, allocatable, intent(out) :: whole(:)   !! it has the place of whole steps
       logical :: left(n_slots)
-      integer :: i, j
+      integer :: i, j, status
 
       left = self%slots%dt > 0.0_wp .and. self%generation == matrices%generation
-      allocate (dt(count(left)), whole(count(left)))
+      allocate (dt(count(left)), whole(count(left)), stat=status)
+      call check_allocation(status)
       do i = 1, size(dt)
          j = minloc(self%slots%last_use, dim=1, mask=left)
          dt(i) = self%slots(j)%dt
@@ -124,11 +127,12 @@ contains
       type(profile_type), intent(in) :: profile
       type(skyline_type) :: matrix
       real(wp) :: d(structure%map%n_freedoms), history(structure%n_history)
-      integer :: i
+      integer :: i, status
 
       d = 0.0_wp
       history = 0.0_wp
-      allocate (self%parts(profile_entries(profile), 3))
+      allocate (self%parts(profile_entries(profile), 3), stat=status)
+      call check_allocation(status)
       do i = 1, 3
          call assemble_sum(structure, profile, d, history, unit(:, i), matrix)
          call column_values(matrix, profile, self%parts(:, i))

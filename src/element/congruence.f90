@@ -1,6 +1,7 @@
 !> Which elements of a group have the same shape, so that their matrices are the same.
 module congruence
    use kinds, only: wp, int64
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -21,10 +22,12 @@ contains
       integer, allocatable, intent(out) :: class(:)     !! (n_elements) number of the shape
       integer, allocatable, intent(out) :: first(:)     !! (n_classes) first element of each
       integer, allocatable :: table(:), next(:), members(:)
-      integer :: e, n_classes, place, c
+      integer :: e, n_classes, place, c, status
 
-      allocate (class(size(x, 3)), members(size(x, 3)), next(size(x, 3)))
-      allocate (table(0:2*size(x, 3)))
+      allocate (class(size(x, 3)), members(size(x, 3)), next(size(x, 3)), stat=status)
+      call check_allocation(status)
+      allocate (table(0:2*size(x, 3)), stat=status)
+      call check_allocation(status)
       table = 0
       n_classes = 0
       do e = 1, size(x, 3)

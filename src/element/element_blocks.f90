@@ -2,6 +2,7 @@
 !> takes at once, and chunks of blocks that one thread takes at once. The order depends on the
 !> group alone, never on the number of threads.
 module element_blocks
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -29,13 +30,14 @@ contains
       type(blocks_type), intent(out) :: self
       integer, intent(in) :: class(:)           !! (n_elements) from 1
       integer, allocatable :: first(:)
-      integer :: n, in_chunk, c, from, to, n_blocks, e
+      integer :: n, in_chunk, c, from, to, n_blocks, e, status
 
       n = size(class)
       in_chunk = min(max(n/wanted_chunks, fewest_in_chunk), most_in_chunk)
       in_chunk = (in_chunk/block_size)*block_size
       self%n_chunks = (n + in_chunk - 1)/in_chunk
-      allocate (self%order(n), self%chunk_first(self%n_chunks + 1), first(n + 1))
+      allocate (self%order(n), self%chunk_first(self%n_chunks + 1), first(n + 1), stat=status)
+      call check_allocation(status)
       n_blocks = 0
       do c = 1, self%n_chunks
          self%chunk_first(c) = n_blocks + 1
@@ -62,14 +64,15 @@ contains
       integer, intent(in) :: offset             !! index of the element before the first
       integer, intent(out) :: order(:)
       integer, allocatable :: place(:)
-      integer :: e, low
+      integer :: e, low, status
 
       if (all(class == class(1))) then
          order = [(offset + e, e=1, size(class))]
          return
       end if
       low = minval(class)
-      allocate (place(low:maxval(class) + 1))
+      allocate (place(low:maxval(class) + 1), stat=status)
+      call check_allocation(status)
       place = 0
       do e = 1, size(class)
          place(class(e) + 1) = place(class(e) + 1) + 1

@@ -1,6 +1,7 @@
 !> Values at the points of a solid carried to its nodes.
 module point_fit
    use kinds, only: wp
+   use memory_shortage, only: check_allocation
    use quadrature, only: rule_type
    use topology, only: quad8, count_nodes, node_coordinates, same_corners, shape_functions
    implicit none
@@ -19,13 +20,15 @@ contains
       real(wp) :: matrix(count_nodes(topology), rule%n)
       real(wp), allocatable :: at_points(:, :), at_nodes(:, :)
       real(wp) :: xi(2, count_nodes(topology))
-      integer :: basis, i
+      integer :: basis, i, status
 
       matrix = 1.0_wp
       if (rule%n == 1) return
       basis = merge(quad8, same_corners(topology), rule%n == 9)
       xi = node_coordinates(topology)
-      allocate (at_points(rule%n, count_nodes(basis)), at_nodes(size(xi, 2), count_nodes(basis)))
+      allocate (at_points(rule%n, count_nodes(basis)), at_nodes(size(xi, 2), count_nodes(basis)), &
+            stat=status)
+      call check_allocation(status)
       do i = 1, rule%n
          at_points(i, :) = shape_functions(basis, rule%point(:, i))
       end do

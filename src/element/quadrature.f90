@@ -2,6 +2,7 @@
 !> natural coordinate fastest.
 module quadrature
    use kinds, only: wp
+   use memory_shortage, only: check_allocation
    use topology, only: tri3, quad4, tri6, count_corners
    implicit none
    private
@@ -55,9 +56,11 @@ contains
       integer, intent(in) :: n                  !! 1, 3, 6 or 7
       type(rule_type), intent(out) :: rule
       real(wp) :: root
+      integer :: status
 
       rule%n = 0
-      allocate (rule%point(2, n), rule%weight(n))
+      allocate (rule%point(2, n), rule%weight(n), stat=status)
+      call check_allocation(status)
       select case (n)
       case (1)
          call add_centre(rule, 1.0_wp)
@@ -105,11 +108,12 @@ contains
       integer, intent(in) :: n                  !! points in each direction: 1, 2 or 3
       type(rule_type), intent(out) :: rule
       real(wp) :: s(n), weight(n)
-      integer :: i, j
+      integer :: i, j, status
 
       call line_rule(s, weight)
       rule%n = n*n
-      allocate (rule%point(2, n*n), rule%weight(n*n))
+      allocate (rule%point(2, n*n), rule%weight(n*n), stat=status)
+      call check_allocation(status)
       do j = 1, n
          do i = 1, n
             rule%point(:, (j - 1)*n + i) = [s(i), s(j)]

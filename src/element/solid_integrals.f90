@@ -2,6 +2,7 @@
 !> of CAX8R alone with that of its stiffness.
 module solid_integrals
    use kinds, only: wp
+   use memory_shortage, only: check_allocation
    use elastic, only: axisymmetric
    use quadrature, only: rule_type, mass_rule, stiffness_rule, line_rule
    use solid_geometry, only: solid_shape_type, map_derivatives, depth_at
@@ -61,10 +62,11 @@ contains
       type(rule_type) :: rule
       real(wp), allocatable :: n(:, :), dn(:, :, :)
       real(wp) :: volume, total
-      integer :: e, p
+      integer :: e, p, status
 
       rule = mass_rule(shape%topology)
-      allocate (n(size(x, 2), rule%n), dn(2, size(x, 2), rule%n))
+      allocate (n(size(x, 2), rule%n), dn(2, size(x, 2), rule%n), stat=status)
+      call check_allocation(status)
       do p = 1, rule%n
          n(:, p) = shape_functions(shape%topology, rule%point(:, p))
          dn(:, :, p) = shape_derivatives(shape%topology, rule%point(:, p))

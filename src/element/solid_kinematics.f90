@@ -3,6 +3,7 @@
 !> Components are 11 22 33 12 with engineering shear strain; 33 is the hoop of axisymmetric solids.
 module solid_kinematics
    use kinds, only: wp
+   use memory_shortage, only: check_allocation
    use elastic, only: axisymmetric
    use quadrature, only: rule_type, stiffness_rule
    use solid_geometry, only: solid_shape_type, map_derivatives, depth_at
@@ -33,15 +34,19 @@ contains
       type(solid_shape_type), intent(in) :: shape
       real(wp), intent(in) :: x(:, :, :)        !! (2, nodes, elements) without faults
       type(rule_type) :: rule
-      integer :: e, n, m
+      integer :: e, n, m, status
 
       rule = stiffness_rule(shape%topology, shape%reduced)
       n = size(x, 2)
       m = size(x, 3)
       self%b_bar = shape%b_bar
-      allocate (self%gradient(3, n, rule%n, m), self%volume(rule%n, m))
-      allocate (self%dilatation(2, n, merge(m, 0, shape%b_bar)))
-      allocate (self%hourglass(n, merge(m, 0, shape%topology == quad4 .and. shape%reduced)))
+      allocate (self%gradient(3, n, rule%n, m), self%volume(rule%n, m), stat=status)
+      call check_allocation(status)
+      allocate (self%dilatation(2, n, merge(m, 0, shape%b_bar)), stat=status)
+      call check_allocation(status)
+      allocate (self%hourglass(n, merge(m, 0, shape%topology == quad4 .and. shape%reduced)), &
+            stat=status)
+      call check_allocation(status)
       do e = 1, m
          if (shape%plane == axisymmetric .and. size(self%hourglass, 2) > 0) then
             call place_mean_point(self, shape, x(:, :, e), e)

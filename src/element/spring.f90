@@ -2,6 +2,7 @@
 !> nodes, small displacements), linear or by a table of force over elongation.
 module spring
    use kinds, only: wp
+   use memory_shortage, only: check_allocation
    use element_interface, only: element_type
    use axial_kinematics, only: rank_one, elongations, spread
    implicit none
@@ -46,9 +47,10 @@ contains
    !> Energies at the table's points by the trapezoidal rule, zero at zero elongation.
    pure subroutine integrate_table(self)
       type(spring_type), intent(inout) :: self
-      integer :: i
+      integer :: i, status
 
-      allocate (self%energy(size(self%u)))
+      allocate (self%energy(size(self%u)), stat=status)
+      call check_allocation(status)
       self%energy(1) = 0.0_wp
       do i = 2, size(self%u)
          self%energy(i) = self%energy(i - 1) &

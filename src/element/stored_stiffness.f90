@@ -5,6 +5,7 @@
 !> the sum of the others.
 module stored_stiffness
    use kinds, only: wp
+   use memory_shortage, only: check_allocation
    use element_blocks, only: block_size
    implicit none
    private
@@ -30,14 +31,17 @@ contains
       integer, intent(in) :: n_nodes
       logical, intent(in) :: shiftable_x, shared
       integer, intent(in) :: n
+      integer :: status
 
       self%n_nodes = n_nodes
       self%shared = shared
       self%shiftable_x = shiftable_x
       self%m = 2*n_nodes - merge(2, 1, shiftable_x)
-      allocate (self%table(self%m, self%m, merge(n, 0, shared)))
+      allocate (self%table(self%m, self%m, merge(n, 0, shared)), stat=status)
+      call check_allocation(status)
       allocate (self%lanes(block_size, self%m*(self%m + 1)/2, &
-            merge(0, (n + block_size - 1)/block_size, shared)))
+            merge(0, (n + block_size - 1)/block_size, shared)), stat=status)
+      call check_allocation(status)
    end subroutine new_stored_stiffness
 
    !> Keeps the symmetric matrix of class or element i.

@@ -1,6 +1,7 @@
 !> Which rows take part in an impact.
 module impact_choice
    use kinds, only: wp
+   use memory_shortage, only: check_allocation
    use constraint_rows, only: row_gaps, row_rates, rate_size, may_hit
    use impact_scene, only: scene_type, contact_motion_type, gap_tolerance, merge_gap_tolerance, &
          rate_tolerance, merge_time_tolerance
@@ -30,7 +31,7 @@ contains
       type(impact_type), intent(out) :: impact
       real(wp), dimension(scene%rows%n) :: gaps, rates
       real(wp) :: near, at_wall, nearest
-      integer :: i, row
+      integer :: i, row, status
 
       gaps = row_gaps(scene%rows, motion%motion)
       rates = row_rates(scene%rows, motion%motion)
@@ -47,7 +48,8 @@ contains
       ! once
       impact%near = may_hit(scene%rows) .and. .not. motion%touching .and. .not. impact%new .and. &
             .not. scene%rows%restitution > 0.0_wp .and. gaps <= at_wall
-      allocate (impact%forced(scene%rows%n))
+      allocate (impact%forced(scene%rows%n), stat=status)
+      call check_allocation(status)
       impact%forced = .false.
       do i = 1, hits%n
          row = hits%row(i)

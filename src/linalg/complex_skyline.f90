@@ -3,6 +3,7 @@
 !> pivoting: the real part is to be positive definite, which keeps the pivots away from zero.
 module complex_skyline
    use kinds, only: wp, int64
+   use memory_shortage, only: check_allocation
    use blas_interfaces, only: zdotu, zaxpy
    use skyline_matrix, only: profile_type, skyline_type
    implicit none
@@ -32,16 +33,18 @@ contains
    pure subroutine new_complex_skyline(self, profile)
       type(complex_skyline_type), intent(out) :: self
       type(profile_type), intent(in) :: profile
-      integer :: j
+      integer :: j, status
 
       self%n = profile%n
       self%top = profile%first_row
-      allocate (self%diagonal_at(self%n))
+      allocate (self%diagonal_at(self%n), stat=status)
+      call check_allocation(status)
       do j = 1, self%n
          self%diagonal_at(j) = j - self%top(j) + 1
          if (j > 1) self%diagonal_at(j) = self%diagonal_at(j) + self%diagonal_at(j - 1)
       end do
-      allocate (self%values(last_address(self)))
+      allocate (self%values(last_address(self)), stat=status)
+      call check_allocation(status)
       self%values = (0.0_wp, 0.0_wp)
    end subroutine new_complex_skyline
 

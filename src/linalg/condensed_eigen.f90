@@ -2,6 +2,7 @@
 !> with F the part of (K - sigma M)^-1 that belongs to them, F M z = z/(lambda - sigma).
 module condensed_eigen
    use kinds, only: wp
+   use memory_shortage, only: check_allocation
    use blas_interfaces, only: dsygv
    use skyline_matrix, only: skyline_type, diagonal, multiply
    use skyline_ldlt, only: solve
@@ -26,11 +27,12 @@ contains
       integer, intent(out) :: info
       real(wp), allocatable :: m(:, :), f(:, :), mu(:), work(:)
       integer, allocatable :: rows(:)
-      integer :: i, n, n_found
+      integer :: i, n, n_found, status
 
       rows = pack([(i, i=1, mass%n)], diagonal(mass) > 0.0_wp)
       n = size(rows)
-      allocate (m(n, n), f(n, n), mu(n), work(34*n + 1))
+      allocate (m(n, n), f(n, n), mu(n), work(34*n + 1), stat=status)
+      call check_allocation(status)
       do i = 1, n
          call column(rows(i), m(:, i), f(:, i))
       end do
@@ -38,7 +40,8 @@ contains
       call dsygv(3, 'V', 'U', n, m, n, f, n, mu, work, size(work), info)
       n_found = 0
       if (info == 0 .and. n > 0) n_found = min(n_wanted, count(mu > n*massless*mu(n)))
-      allocate (lambda(n_found), x(mass%n, n_found))
+      allocate (lambda(n_found), x(mass%n, n_found), stat=status)
+      call check_allocation(status)
       do i = 1, n_found
          lambda(i) = sigma + 1.0_wp/mu(n + 1 - i)
          x(:, i) = 0.0_wp

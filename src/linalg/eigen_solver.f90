@@ -6,6 +6,7 @@
 !> by starting from a thousandth of trace K / trace M.
 module eigen_solver
    use kinds, only: wp
+   use memory_shortage, only: check_allocation
    use skyline_matrix, only: skyline_type, diagonal, multiply, absolute
    use skyline_ldlt, only: factorize, ldlt_report_type
    use condensed_eigen, only: condense
@@ -13,7 +14,7 @@ module eigen_solver
    implicit none
    private
 
-   public :: eigen_type, find_eigenvalues
+   public :: eigen_type, find_eigenvalues, small
    public :: outcome_found, outcome_singular, outcome_indefinite, outcome_not_converged
 
    integer, parameter :: outcome_found = 0
@@ -25,6 +26,8 @@ module eigen_solver
    integer, parameter :: small = 200
    !> Up to here condensation helps out when Lanczos' method fails.
    integer, parameter :: not_too_large = 3000
+   !> Vectors that integers of ARPACK can count the products of.
+   integer, parameter :: most_vectors = 40000
    !> Pivots below this part of the diagonal make the shift 0 too risky.
    real(wp), parameter :: safe_pivot = 1.0e-8_wp
    !> Largest |K x - lambda M x| as a part of |K| |x| + |lambda| |M| |x|.
@@ -50,10 +53,11 @@ contains
       integer, intent(in) :: n_wanted
       type(eigen_type), intent(out) :: self
       type(skyline_type) :: factors
-      integer :: attempt
+      integer :: attempt, status
       real(wp) :: highest
 
-      allocate (self%lambda(0), self%x(mass%n, 0), self%residual(0))
+      allocate (self%lambda(0), self%x(mass%n, 0), self%residual(0), stat=status)
+      call check_allocation(status)
       if (.not. any(diagonal(mass) > 0.0_wp) .or. n_wanted < 1) return
       call choose_shift(stiffness, mass, self, factors)
       if (self%outcome /= outcome_found) return
@@ -116,7 +120,7 @@ contains
       integer, intent(in) :: n_wanted
       type(eigen_type), intent(inout) :: self
       real(wp), allocatable :: lambda(:), x(:, :)
-      integer :: n_massive, n, n_basis, attempt, info
+      integer :: n_massive, n, n_basis, attempt, info, status
 
       n_massive = count(diagonal(mass) > 0.0_wp)
       if (n_massive > small .and. n_wanted <= n_massive/2) then
@@ -124,7 +128,9 @@ contains
          n = n_wanted + 2
          n_basis = max(2*n + 1, n + 20)
          do attempt = 1, 3
-            allocate (lambda(n), x(mass%n, n))
+            if (min(n_basis, n_massive) > most_vectors) exit
+            allocate (lambda(n), x(mass%n, n), stat=status)
+            call check_allocation(status)
             call lanczos(factors, mass, self%sigma, min(n_basis, n_massive), lambda, x, info)
             self%lambda = lambda(:n_wanted)
             self%x = x(:, :n_wanted)
@@ -172,12 +178,13 @@ contains
       type(skyline_type) :: absolute_stiffness, absolute_mass
       real(wp), dimension(mass%n) :: force, size_of_force
       real(wp) :: noise, noise_of_shift, quotient
-      integer :: i
+      integer :: i, status
 
       absolute_stiffness = absolute(stiffness)
       absolute_mass = absolute(mass)
       deallocate (self%residual)
-      allocate (self%residual(size(self%lambda)))
+      allocate (self%residual(size(self%lambda)), stat=status)
+      call check_allocation(status)
       do i = 1, size(self%lambda)
          associate (x => self%x(:, i), lambda => self%lambda(i))
             force = multiply(stiffness, x)

@@ -12,6 +12,7 @@
 !> has the condition 0 <= z, z - x_n >= 0.
 module friction_lemke
    use kinds, only: wp
+   use memory_shortage, only: check_allocation
    use friction_law, only: friction_problem_type, dependence_tolerance
    use lemke, only: solve_lemke
    use square_systems, only: solve_square
@@ -33,12 +34,14 @@ contains
       logical, intent(out) :: solved
       integer, allocatable :: contact(:), kind(:)
       real(wp), allocatable :: matrix(:, :), rhs(:), z(:), response(:, :), forces(:, :)
+      integer :: status
 
       x = 0.0_wp
       call list_unknowns(problem, contact, kind)
       call bilateral_response(problem, response, solved)
       if (.not. solved) return
-      allocate (z(size(kind)))
+      allocate (z(size(kind)), stat=status)
+      call check_allocation(status)
       forces = force_of_unknowns(problem, contact, kind)
       call build_problem(problem, contact, kind, forces, response, matrix, rhs)
       call solve_lemke(matrix, rhs, z, solved)
@@ -69,13 +72,15 @@ contains
       logical, intent(out) :: solved
       integer :: rows(count(problem%bilateral)), i, n
       real(wp) :: answer(size(rows), 2*problem%n + 1)
+      integer :: status
 
       n = problem%n
       rows = pack([(i, i=1, n)], problem%bilateral)
       answer(:, :2*n) = -problem%w(rows, :)
       answer(:, 2*n + 1) = -problem%q(rows)
       call solve_square(problem%w(rows, rows), answer, dependence_tolerance, solved)
-      allocate (response(2*n, 2*n + 1), source=0.0_wp)
+      allocate (response(2*n, 2*n + 1), source=0.0_wp, stat=status)
+      call check_allocation(status)
       response(rows, :) = answer
    end subroutine bilateral_response
 
@@ -112,13 +117,14 @@ contains
       real(wp), allocatable, intent(out) :: matrix(:, :), rhs(:)
       real(wp) :: rate(2*problem%n, size(kind)), rate_alone(2*problem%n)
       real(wp) :: follow(2*problem%n, size(kind))
-      integer :: i, j, n
+      integer :: i, j, n, status
 
       n = problem%n
       follow = matmul(response(:, :2*n), forces)
       rate = matmul(problem%w, forces + follow)
       rate_alone = matmul(problem%w, response(:, 2*n + 1)) + problem%q
-      allocate (matrix(size(kind), size(kind)), rhs(size(kind)), source=0.0_wp)
+      allocate (matrix(size(kind), size(kind)), rhs(size(kind)), source=0.0_wp, stat=status)
+      call check_allocation(status)
       do j = 1, size(kind)
          i = contact(j)
          select case (kind(j))

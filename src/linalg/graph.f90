@@ -1,6 +1,7 @@
 !> Undirected graphs as lists of neighbours, and breadth-first levels in them.
 module graph
    use kinds, only: wp, int64
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -22,11 +23,12 @@ contains
       integer, intent(in) :: first(:)            !! (n_cliques+1) where a clique starts
       integer, intent(in) :: member(:)           !! vertices, a repeated one counts once
       integer, allocatable :: clique_first(:), clique(:), seen(:)
-      integer :: v, i, j, k, pass
+      integer :: v, i, j, k, pass, status
 
       call vertex_cliques(n, first, member, clique_first, clique)
       self%n = n
-      allocate (self%first(n + 1), seen(n))
+      allocate (self%first(n + 1), seen(n), stat=status)
+      call check_allocation(status)
       do pass = 1, 2
          seen = 0
          k = 0
@@ -43,7 +45,10 @@ contains
             end do
          end do
          self%first(n + 1) = k + 1
-         if (pass == 1) allocate (self%neighbour(k))
+         if (pass == 1) then
+            allocate (self%neighbour(k), stat=status)
+            call check_allocation(status)
+         end if
       end do
    end subroutine new_graph
 
@@ -52,9 +57,10 @@ contains
       integer, intent(in) :: n, first(:), member(:)
       integer, allocatable, intent(out) :: clique_first(:), clique(:)
       integer, allocatable :: next(:)
-      integer :: c, i
+      integer :: c, i, status
 
-      allocate (clique_first(n + 1), clique(size(member)))
+      allocate (clique_first(n + 1), clique(size(member)), stat=status)
+      call check_allocation(status)
       clique_first = 0
       do i = 1, size(member)
          clique_first(member(i) + 1) = clique_first(member(i) + 1) + 1
@@ -89,7 +95,7 @@ contains
       integer, intent(inout) :: reached(:)       !! (n) the first n_reached are set
       integer, intent(out) :: n_reached
       integer, allocatable, intent(out) :: level_first(:)   !! (n_levels+1)
-      integer :: i, j, v
+      integer :: i, j, v, status
 
       reached(1) = root
       distance(root) = 0
@@ -105,7 +111,8 @@ contains
             reached(n_reached) = v
          end do
       end do
-      allocate (level_first(distance(reached(n_reached)) + 2))
+      allocate (level_first(distance(reached(n_reached)) + 2), stat=status)
+      call check_allocation(status)
       level_first = n_reached + 1
       do i = n_reached, 1, -1
          level_first(distance(reached(i)) + 1) = i
@@ -118,11 +125,12 @@ contains
    pure subroutine sort_by_degree(self)
       type(graph_type), intent(inout) :: self
       integer, allocatable :: by_degree(:), next(:), sorted(:)
-      integer :: i, j, v, w
+      integer :: i, j, v, w, status
 
       by_degree = vertices_by_degree(self)
       next = self%first
-      allocate (sorted(size(self%neighbour)))
+      allocate (sorted(size(self%neighbour)), stat=status)
+      call check_allocation(status)
       do i = 1, self%n
          v = by_degree(i)
          do j = self%first(v), self%first(v + 1) - 1
@@ -163,9 +171,10 @@ contains
       integer(int64), intent(out) :: entries
       real(wp), intent(out) :: cost
       integer, allocatable :: place(:)
-      integer :: i, j, top
+      integer :: i, j, top, status
 
-      allocate (place(self%n))
+      allocate (place(self%n), stat=status)
+      call check_allocation(status)
       do i = 1, self%n
          place(order(i)) = i
       end do

@@ -6,6 +6,7 @@ module mumps_solver
    use kinds, only: wp, int64
    use errors, only: error_type, new_error, status_numerical
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    use sparse_matrix, only: pattern_type, sparse_report_type, pattern_entries, diagonal_places
    use parallel_ranks, only: world, tell_ranks, hear_rank_zero
    implicit none
@@ -65,10 +66,12 @@ contains
       type(pattern_type), intent(in), target :: pattern
       type(sparse_report_type), intent(out) :: report
       type(error_type), allocatable, intent(out) :: error
+      integer :: status
 
       if (.not. self%analysed) then
          self%number = number
-         allocate (self%instance)
+         allocate (self%instance, stat=status)
+         call check_allocation(status)
          self%instance%sym = 2
          call call_ranks(self, job_start)
          call set_options(self%instance)
@@ -139,8 +142,12 @@ contains
    subroutine scale_by_diagonal(instance, diagonal)
       type(dmumps_struc), intent(inout) :: instance
       real(wp), intent(in) :: diagonal(:)        !! absolute values
+      integer :: status
 
-      if (.not. associated(instance%rowsca)) allocate (instance%rowsca(size(diagonal)))
+      if (.not. associated(instance%rowsca)) then
+         allocate (instance%rowsca(size(diagonal)), stat=status)
+         call check_allocation(status)
+      end if
       instance%colsca => instance%rowsca
       where (diagonal > 0.0_wp)
          instance%rowsca = 1.0_wp/sqrt(diagonal)
@@ -214,7 +221,10 @@ contains
          status = message(2)
          if (message(1) == job_dismiss) return
          associate (helper => helpers(message(2)))
-            if (message(1) == job_start) allocate (helper%instance)
+            if (message(1) == job_start) then
+               allocate (helper%instance, stat=status)
+               call check_allocation(status)
+            end if
             call call_mumps(helper%instance, message(1))
             if (message(1) == job_end) deallocate (helper%instance)
          end associate

@@ -6,6 +6,7 @@
 !> is stored by columns instead, each from its first row to the diagonal, one after the other.
 module panel_layout
    use kinds, only: wp, int64
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -94,11 +95,12 @@ contains
    pure subroutine place_columns(self, first_row)
       type(panel_layout_type), intent(inout) :: self
       integer, intent(in) :: first_row(:)
-      integer :: j
+      integer :: j, status
 
       self%by_columns = .true.
       self%top = first_row
-      allocate (self%diagonal_at(self%n))
+      allocate (self%diagonal_at(self%n), stat=status)
+      call check_allocation(status)
       do j = 1, self%n
          self%n_entries = self%n_entries + j - first_row(j) + 1
          self%diagonal_at(j) = self%n_entries
@@ -112,8 +114,10 @@ contains
       logical, intent(in) :: coupled(:)
       integer, allocatable, intent(out) :: top(:)
       integer :: before(self%n), j, n
+      integer :: status
 
-      allocate (self%number(self%n))
+      allocate (self%number(self%n), stat=status)
+      call check_allocation(status)
       n = 0
       do j = 1, self%n
          before(j) = n
@@ -121,7 +125,8 @@ contains
          self%number(j) = merge(n, 0, coupled(j))
       end do
       self%n_coupled = n
-      allocate (top(n))
+      allocate (top(n), stat=status)
+      call check_allocation(status)
       do j = 1, self%n
          if (coupled(j)) top(self%number(j)) = before(first_row(j)) + 1
       end do
@@ -132,13 +137,14 @@ contains
       type(panel_layout_type), intent(inout) :: self
       integer, intent(in) :: top(:)
       integer, dimension(self%n_coupled + 1) :: starting, first
-      integer :: j, crossing, wanted, p
+      integer :: j, crossing, wanted, p, status
 
       starting = 0
       do j = 1, self%n_coupled
          starting(top(j)) = starting(top(j)) + 1
       end do
-      allocate (self%panel_of(self%n_coupled))
+      allocate (self%panel_of(self%n_coupled), stat=status)
+      call check_allocation(status)
       crossing = 0
       wanted = 0
       p = 0
@@ -165,9 +171,10 @@ contains
       type(panel_layout_type), intent(inout) :: self
       integer, intent(in) :: top(:)
       integer, dimension(self%n_panels) :: last_row, n_rows, n_runs
-      integer :: i, p, pass
+      integer :: i, p, pass, status
 
-      allocate (self%first_run(self%n_panels + 1), self%source(self%n_panels))
+      allocate (self%first_run(self%n_panels + 1), self%source(self%n_panels), stat=status)
+      call check_allocation(status)
       self%source = [(p, p=1, self%n_panels)]
       do pass = 1, 2
          last_row = -1
@@ -191,8 +198,10 @@ contains
             do p = 1, self%n_panels
                self%first_run(p + 1) = self%first_run(p) + n_runs(p) + 1
             end do
-            allocate (self%run_row(self%first_run(self%n_panels + 1) - 1))
-            allocate (self%run_place(size(self%run_row)))
+            allocate (self%run_row(self%first_run(self%n_panels + 1) - 1), stat=status)
+            call check_allocation(status)
+            allocate (self%run_place(size(self%run_row)), stat=status)
+            call check_allocation(status)
          end if
       end do
       do p = 1, self%n_panels
@@ -205,9 +214,10 @@ contains
    !> can share them: a later panel's far rows do not begin in an earlier panel.
    pure subroutine divide_tails(self)
       type(panel_layout_type), intent(inout) :: self
-      integer :: p, near, run, row, panel
+      integer :: p, near, run, row, panel, status
 
-      allocate (self%far_panel(self%n_panels), self%far_place(self%n_panels))
+      allocate (self%far_panel(self%n_panels), self%far_place(self%n_panels), stat=status)
+      call check_allocation(status)
       panel = 0
       do p = 1, self%n_panels
          near = self%n_rows(p) - 1
@@ -228,9 +238,10 @@ contains
    pure subroutine place_entries(self)
       type(panel_layout_type), intent(inout) :: self
       integer(int64) :: next
-      integer :: i, p, j
+      integer :: i, p, j, status
 
-      allocate (self%at(self%n_panels + 1), self%diagonal_at(self%n))
+      allocate (self%at(self%n_panels + 1), self%diagonal_at(self%n), stat=status)
+      call check_allocation(status)
       self%at(1) = 1
       do p = 1, self%n_panels
          self%at(p + 1) = self%at(p) + int(self%width(p), int64)*self%n_rows(p)

@@ -3,6 +3,7 @@
 !> the result does not depend on their number.
 module panel_reduction
    use kinds, only: wp, int64
+   use memory_shortage, only: check_allocation
    use blas_interfaces, only: dtrsm
    use panel_layout, only: panel_layout_type
    use panel_kernels, only: subtract_product, reduce_block, scale_tail
@@ -39,9 +40,10 @@ contains
       real(wp), allocatable, intent(out) :: pivots(:)   !! (n_coupled)
       integer, intent(out) :: zero_pivot
       type(progress_type) :: progress
-      integer :: p, n_together
+      integer :: p, n_together, status
 
-      allocate (progress%done(layout%n_panels), progress%pivots(layout%n_coupled))
+      allocate (progress%done(layout%n_panels), progress%pivots(layout%n_coupled), stat=status)
+      call check_allocation(status)
       progress%done = 0
       progress%pivots = 0.0_wp
       progress%failed = layout%n_panels + 1
@@ -174,7 +176,7 @@ contains
       real(wp), intent(inout) :: values(layout%n_entries)
       real(wp), intent(in) :: pivots(:)
       real(wp), allocatable :: scaled(:, :)
-      integer :: run, w, start, n, n_all, i, end_mark
+      integer :: run, w, start, n, n_all, i, end_mark, status
       integer(int64) :: at
 
       end_mark = layout%first_run(s + 1) - 1
@@ -186,7 +188,8 @@ contains
       w = layout%width(s)
       n_all = layout%n_rows(s) - start
       at = layout%at(s) + int(start, int64)*w
-      allocate (scaled(w, n))
+      allocate (scaled(w, n), stat=status)
+      call check_allocation(status)
       do i = 1, n
          scaled(:, i) = values(at + int(i - 1, int64)*w:at + int(i, int64)*w - 1) &
                *pivots(layout%column(s):layout%column(s + 1) - 1)
@@ -235,12 +238,13 @@ contains
       real(wp), intent(inout) :: values(layout%n_entries)
       real(wp), allocatable :: product(:, :)
       integer :: column(size(scaled, 2))
-      integer :: run, target_run, place, row, w, i, n
+      integer :: run, target_run, place, row, w, i, n, status
       integer(int64) :: to
 
       w = layout%width(p)
       n = size(scaled, 2)
-      allocate (product(n, start:layout%n_rows(s) - 1))
+      allocate (product(n, start:layout%n_rows(s) - 1), stat=status)
+      call check_allocation(status)
       product = 0.0_wp
       call subtract_product(n, size(product, 2), size(scaled, 1), scaled, &
             values(layout%at(s) + int(start, int64)*size(scaled, 1)), product, n)

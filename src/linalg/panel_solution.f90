@@ -3,6 +3,7 @@
 module panel_solution
    use omp_lib, only: omp_get_max_threads, omp_get_num_threads, omp_get_thread_num
    use kinds, only: wp, int64
+   use memory_shortage, only: check_allocation
    use blas_interfaces, only: dgemm, dtrsm
    use panel_layout, only: panel_layout_type
    use panel_kernels, only: solve_block, solve_block_transposed, tail_times, &
@@ -200,12 +201,13 @@ contains
       real(wp), intent(in) :: values(layout%n_entries)
       real(wp), intent(inout) :: x(layout%n_coupled, n_sides)
       real(wp), allocatable :: z(:)
-      integer :: k, p, most_rows, n_here
+      integer :: k, p, most_rows, n_here, status
 
       if (layout%n_panels == 0) return
       most_rows = maxval([(layout%n_rows(p), p=1, layout%n_panels)])
-      !$omp parallel if (n_sides > together) private(z, p, n_here)
-      allocate (z(most_rows*min(together, n_sides)))
+      !$omp parallel if (n_sides > together) private(z, p, n_here, status)
+      allocate (z(most_rows*min(together, n_sides)), stat=status)
+      call check_allocation(status)
       !$omp do schedule(dynamic, 1)
       do k = 1, n_sides, together
          n_here = min(together, n_sides - k + 1)

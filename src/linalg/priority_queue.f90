@@ -1,6 +1,7 @@
 !> A binary heap of numbered items with priorities that grow; the highest comes out first, of equal
 !> ones the lowest number.
 module priority_queue
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -24,9 +25,11 @@ contains
    pure subroutine new_queue(self, priority)
       type(queue_type), intent(out) :: self
       integer, intent(in) :: priority(:)
+      integer :: status
 
       self%priority = priority
-      allocate (self%item(size(priority)), self%place(size(priority)))
+      allocate (self%item(size(priority)), self%place(size(priority)), stat=status)
+      call check_allocation(status)
       self%place = 0
    end subroutine new_queue
 

@@ -3,6 +3,7 @@
 !> 2651-2679). Both start at the ends of long, narrow level structures.
 module renumbering
    use kinds, only: wp, int64
+   use memory_shortage, only: check_allocation
    use graph, only: graph_type, degree, walk_levels, sort_by_degree, order_cost
    use priority_queue, only: queue_type, new_queue
    implicit none
@@ -28,12 +29,13 @@ contains
       integer :: order(graph%n)
       type(graph_type) :: sorted
       integer, allocatable :: distance(:), level_first(:)
-      integer :: v, n, n_part, ends(2)
+      integer :: v, n, n_part, ends(2), status
       logical, allocatable :: done(:)
 
       sorted = graph
       call sort_by_degree(sorted)
-      allocate (distance(graph%n), done(graph%n))
+      allocate (distance(graph%n), done(graph%n), stat=status)
+      call check_allocation(status)
       distance = -1
       done = .false.
       n = 0
@@ -71,9 +73,10 @@ contains
       integer :: order(graph%n)
       type(queue_type) :: queue
       integer, allocatable :: distance(:), state(:), reached(:), level_first(:)
-      integer :: v, n, n_part, level, i, ends(2)
+      integer :: v, n, n_part, level, i, ends(2), status
 
-      allocate (distance(graph%n), state(graph%n), reached(graph%n))
+      allocate (distance(graph%n), state(graph%n), reached(graph%n), stat=status)
+      call check_allocation(status)
       distance = -1
       state = inactive
       call new_queue(queue, [(-weight(2)*(degree(graph, v) + 1), v=1, graph%n)])
@@ -178,10 +181,11 @@ contains
       type(graph_type), intent(in) :: graph
       integer, intent(in) :: level(:)
       integer, allocatable :: candidates(:)
-      integer :: degrees(size(level)), i, lowest
+      integer :: degrees(size(level)), i, lowest, status
 
       degrees = degree(graph, level)
-      allocate (candidates(0))
+      allocate (candidates(0), stat=status)
+      call check_allocation(status)
       do i = 1, max_candidates
          if (.not. any(degrees < huge(1))) return
          lowest = minval(degrees)

@@ -2,6 +2,7 @@
 !> restarted Lanczos method of ARPACK on (K - sigma M)^-1 M in the product of M (its mode 3).
 module shifted_lanczos
    use kinds, only: wp, int64
+   use memory_shortage, only: check_allocation
    use arpack_interfaces, only: dsaupd, dseupd
    use skyline_matrix, only: skyline_type, multiply
    use skyline_ldlt, only: solve
@@ -26,13 +27,14 @@ contains
       real(wp), intent(out) :: x(:, :)           !! (n_eq, n) of unit modal mass
       integer, intent(out) :: info
       real(wp), allocatable :: basis(:, :), work(:), small_work(:), residual(:)
-      integer :: ido, settings(11), at(11), n, n_wanted
+      integer :: ido, settings(11), at(11), n, n_wanted, status
       real(wp) :: tolerance
       logical :: chosen(n_basis)
 
       n = factors%n
       n_wanted = size(lambda)
-      allocate (basis(n, n_basis), work(3*n), small_work(n_basis*(n_basis + 8)))
+      allocate (basis(n, n_basis), work(3*n), small_work(n_basis*(n_basis + 8)), stat=status)
+      call check_allocation(status)
       basis = 0.0_wp
       work = 0.0_wp
       small_work = 0.0_wp

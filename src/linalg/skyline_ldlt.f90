@@ -2,6 +2,7 @@
 !> back-substitution.
 module skyline_ldlt
    use kinds, only: wp
+   use memory_shortage, only: check_allocation
    use skyline_matrix, only: skyline_type, diagonal
    use column_ldlt, only: reduce_columns, solve_columns
    use panel_reduction, only: reduce_panels
@@ -75,7 +76,7 @@ contains
       type(skyline_type), intent(in) :: factors   !! as `factorize` left it
       real(wp), intent(inout) :: b(:, :)          !! (n, n_sides)
       real(wp), allocatable :: x(:, :)
-      integer :: k
+      integer :: k, status
 
       if (factors%layout%by_columns) then
          do k = 1, size(b, 2)
@@ -84,7 +85,8 @@ contains
          return
       end if
       associate (layout => factors%layout)
-         allocate (x(layout%n_coupled, size(b, 2)))
+         allocate (x(layout%n_coupled, size(b, 2)), stat=status)
+         call check_allocation(status)
          do k = 1, size(b, 2)
             if (layout%n_coupled > 0) x(:, k) = pack(b(:, k), layout%number > 0)
          end do

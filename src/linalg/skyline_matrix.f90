@@ -2,6 +2,7 @@
 !> the diagonal, by panels of columns.
 module skyline_matrix
    use kinds, only: wp, int64
+   use memory_shortage, only: check_allocation
    use panel_layout, only: panel_layout_type, new_panel_layout
    use panel_kernels, only: multiply_panel
    use column_ldlt, only: multiply_columns
@@ -39,10 +40,11 @@ contains
    pure subroutine new_profile(self, n)
       type(profile_type), intent(out) :: self
       integer, intent(in) :: n
-      integer :: j
+      integer :: j, status
 
       self%n = n
-      allocate (self%first_row(n), self%coupled(n))
+      allocate (self%first_row(n), self%coupled(n), stat=status)
+      call check_allocation(status)
       self%coupled = .false.
       do j = 1, n
          self%first_row(j) = j
@@ -80,10 +82,12 @@ contains
       type(skyline_type), intent(out) :: self
       type(profile_type), intent(in) :: profile
       real(wp), intent(in), optional :: panels_from   !! mean height of columns, to force a layout
+      integer :: status
 
       self%n = profile%n
       call new_panel_layout(self%layout, profile%first_row, profile%coupled, panels_from)
-      allocate (self%values(self%layout%n_entries))
+      allocate (self%values(self%layout%n_entries), stat=status)
+      call check_allocation(status)
       self%values = 0.0_wp
    end subroutine new_skyline
 
@@ -118,13 +122,17 @@ contains
       real(wp), intent(in) :: factors(3)
       type(skyline_type), intent(in) :: parts(3)
       integer(int64) :: k
+      integer :: status
 
       self%n = parts(1)%n
       self%layout = parts(1)%layout
       if (allocated(self%values)) then
          if (size(self%values, kind=int64) /= self%layout%n_entries) deallocate (self%values)
       end if
-      if (.not. allocated(self%values)) allocate (self%values(self%layout%n_entries))
+      if (.not. allocated(self%values)) then
+         allocate (self%values(self%layout%n_entries), stat=status)
+         call check_allocation(status)
+      end if
       !$omp parallel do if (size(self%values, kind=int64) > worth_threads)
       do k = 1, size(self%values, kind=int64)
          self%values(k) = factors(1)*parts(1)%values(k) + factors(2)*parts(2)%values(k) &

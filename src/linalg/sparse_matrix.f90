@@ -2,6 +2,7 @@
 !> the sets of equations that elements couple; a matrix is then an array of values.
 module sparse_matrix
    use kinds, only: wp, int64
+   use memory_shortage, only: check_allocation
    use graph, only: vertex_cliques
    implicit none
    private
@@ -35,11 +36,12 @@ contains
       integer, intent(in) :: member(:)           !! equations
       integer, allocatable :: set_first(:), sets(:), seen(:)
       integer(int64), allocatable :: next(:)
-      integer :: pass, i
+      integer :: pass, i, status
 
       call vertex_cliques(n, first, member, set_first, sets)
       self%n = n
-      allocate (self%first(n + 1), next(n), seen(n))
+      allocate (self%first(n + 1), next(n), seen(n), stat=status)
+      call check_allocation(status)
       next = 0
       do pass = 1, 2
          seen = 0
@@ -52,7 +54,8 @@ contains
             self%first(i + 1) = self%first(i) + next(i)
             next(i) = self%first(i)
          end do
-         allocate (self%row(self%first(n + 1) - 1), self%column(self%first(n + 1) - 1))
+         allocate (self%row(self%first(n + 1) - 1), self%column(self%first(n + 1) - 1), stat=status)
+         call check_allocation(status)
       end do
 
    contains

@@ -3,10 +3,12 @@ module threads
    use, intrinsic :: iso_c_binding, only: c_int, c_ptr, c_null_ptr, c_funptr, c_char, c_null_char, &
          c_associated, c_f_procpointer
    use omp_lib, only: omp_set_num_threads
+   use kinds, only: wp
+   use blas_interfaces, only: dtrsm
    implicit none
    private
 
-   public :: set_threads
+   public :: set_threads, claim_work_space
 
    abstract interface
       subroutine setter_interface(n) bind(c)
@@ -49,5 +51,15 @@ contains
       call c_f_procpointer(address, setter)
       call setter(1_c_int)
    end subroutine set_threads
+
+   !> Has OpenBLAS take its work space now: later, where the address space is limited and full,
+   !> it would try without end.
+   subroutine claim_work_space()
+      real(wp) :: one(1, 1), x(1, 1)
+
+      one = 1.0_wp
+      x = 1.0_wp
+      call dtrsm('L', 'L', 'N', 'N', 1, 1, 1.0_wp, one, 1, x, 1)
+   end subroutine claim_work_space
 
 end module threads

@@ -1,6 +1,7 @@
 !> Sides of plane and axisymmetric elements. Side i goes from corner i to the next corner, so that
 !> the body lies on the left of who walks along it. One number stands for a side of an element.
 module element_sides
+   use memory_shortage, only: check_allocation
    use mesh, only: element_table_type, is_solid_kind, solid_topology
    implicit none
    private
@@ -78,9 +79,10 @@ contains
       type(element_table_type), intent(in) :: elements
       integer, intent(in) :: n_nodes
       integer, allocatable :: next(:)
-      integer :: e, side, node, nodes(3)
+      integer :: e, side, node, nodes(3), status
 
-      allocate (next(n_nodes + 1), source=0)
+      allocate (next(n_nodes + 1), source=0, stat=status)
+      call check_allocation(status)
       do e = 1, elements%n
          do side = 1, count_sides(elements%kind(e))
             nodes = side_nodes(elements, e, side)
@@ -88,7 +90,8 @@ contains
             next(node) = next(node) + 1
          end do
       end do
-      allocate (self%first(n_nodes + 1), self%keys(sum(next)))
+      allocate (self%first(n_nodes + 1), self%keys(sum(next)), stat=status)
+      call check_allocation(status)
       self%first(1) = 1
       do node = 1, n_nodes
          self%first(node + 1) = self%first(node) + next(node)
@@ -119,10 +122,11 @@ contains
       type(element_table_type), intent(in) :: elements
       integer, intent(in) :: nodes(3)                !! the ends, the middle node or 0
       integer, allocatable, intent(out) :: keys(:)
-      integer :: i, n, low, side(3)
+      integer :: i, n, low, side(3), status
 
       low = minval(nodes(:2))
-      allocate (keys(self%first(low + 1) - self%first(low)))
+      allocate (keys(self%first(low + 1) - self%first(low)), stat=status)
+      call check_allocation(status)
       n = 0
       do i = self%first(low), self%first(low + 1) - 1
          side = side_nodes(elements, key_element(self%keys(i)), key_side(self%keys(i)))

@@ -10,6 +10,7 @@ module column_table
    use hdf5_file, only: hdf5_file_type, series_integer, series_real
    use kinds, only: int64, wp
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -44,6 +45,8 @@ module column_table
       procedure :: add_integer_column
       procedure :: add_text_column
       procedure :: count_rows
+      procedure :: count_columns
+      procedure :: cut_back
       procedure :: flush => flush_rows
       generic :: append_row => append_reals, append_mixed
       procedure, private :: append_reals, append_mixed
@@ -115,6 +118,42 @@ contains
       count_rows = self%n_rows
    end function count_rows
 
+   pure integer function count_columns(self)
+      class(column_table_type), intent(in) :: self
+
+      count_columns = self%reals%n + self%integers%n + self%texts%n
+   end function count_columns
+
+   !> Leaves the first rows of a reopened file, to go on behind them.
+   subroutine cut_back(self, file, n_rows, short, error)
+      class(column_table_type), intent(inout) :: self
+      type(hdf5_file_type), intent(inout) :: file
+      integer, intent(in) :: n_rows
+      character(len=:), allocatable, intent(out) :: short   !! a column with fewer, if there is one
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+
+      call cut_columns(file, self%reals, n_rows, short, error)
+      if (allocated(error) .or. allocated(short)) return
+      call cut_columns(file, self%integers, n_rows, short, error)
+      if (allocated(error) .or. allocated(short)) return
+      call cut_columns(file, self%texts, n_rows, short, error)
+      self%n_rows = n_rows
+   end subroutine cut_back
+
+   subroutine cut_columns(file, columns, n_rows, short, error)
+      type(hdf5_file_type), intent(inout) :: file
+      type(columns_type), intent(in) :: columns
+      integer, intent(in) :: n_rows
+      character(len=:), allocatable, intent(out) :: short
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      do i = 1, columns%n
+         call file%cut(trim(columns%paths(i)), int(n_rows, int64), short, error)
+         if (allocated(error) .or. allocated(short)) return
+      end do
+   end subroutine cut_columns
+
    !> Appends a row to a table of reals.
    subroutine append_reals(self, file, values, error)
       class(column_table_type), intent(inout) :: self
@@ -173,17 +212,38 @@ contains
       end do
    end subroutine check_finite
 
-   !> Writes the rows held in memory, column by column.
+   !> Writes the rows held in memory; of those that do not fit on the disk the first ones.
    subroutine flush_rows(self, file, error)
       class(column_table_type), intent(inout) :: self
       type(hdf5_file_type), intent(inout) :: file
       type(error_type), allocatable, intent(out) :: error   !! status_file
-      integer :: column, n
+      type(error_type), allocatable :: trouble
+      integer :: n
 
       n = self%n_held
       if (n == 0) return
-      call file%reserve(bytes_needed(self, file%deflate > 0), error)
-      if (allocated(error)) return
+      call file%reserve(bytes_needed(self, n, file%deflate > 0), error)
+      if (allocated(error)) then
+         do while (n > 0)
+            n = n/2
+            call file%reserve(bytes_needed(self, n, file%deflate > 0), trouble)
+            if (.not. allocated(trouble)) exit
+         end do
+      end if
+      if (n > 0) call write_rows(self, file, n, trouble)
+      if (allocated(trouble)) call move_alloc(trouble, error)
+      self%n_rows = self%n_rows - (self%n_held - n)
+      self%n_held = 0
+   end subroutine flush_rows
+
+   !> Writes the first rows of those held in memory, column by column.
+   subroutine write_rows(self, file, n, error)
+      type(column_table_type), intent(in) :: self
+      type(hdf5_file_type), intent(inout) :: file
+      integer, intent(in) :: n
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+      integer :: column
+
       do column = 1, self%reals%n
          call file%append(trim(self%reals%paths(column)), self%held_reals(:n, column), error)
          if (allocated(error)) return
@@ -196,20 +256,21 @@ contains
          call file%append(trim(self%texts%paths(column)), self%held_texts(:n, column), error)
          if (allocated(error)) return
       end do
-      self%n_held = 0
-   end subroutine flush_rows
+   end subroutine write_rows
 
-   !> Bytes by which the file grows when the rows held are written: the chunks that they begin, and
+   !> Bytes by which the file grows when the next rows are written: the chunks that they begin, and
    !> their entries in the tables of chunks. A compressed chunk that grows is written anew.
-   pure function bytes_needed(self, compressed) result(bytes)
+   pure function bytes_needed(self, n, compressed) result(bytes)
       type(column_table_type), intent(in) :: self
+      integer, intent(in) :: n                   !! rows
       logical, intent(in) :: compressed
       integer(int64) :: bytes
       integer(int64), parameter :: entry = 256, table = 4096
-      integer :: n_chunks
+      integer :: n_chunks, n_written
 
-      n_chunks = (self%n_rows + chunk_rows - 1)/chunk_rows &
-            - (self%n_rows - self%n_held + chunk_rows - 1)/chunk_rows
+      n_written = self%n_rows - self%n_held
+      n_chunks = (n_written + n + chunk_rows - 1)/chunk_rows &
+            - (n_written + chunk_rows - 1)/chunk_rows
       if (compressed) n_chunks = n_chunks + 1
       bytes = n_chunks*((self%reals%n + self%integers%n)*(8_int64*chunk_rows + entry) &
             + self%texts%n*(int(text_length, int64)*chunk_rows + entry))
@@ -219,12 +280,15 @@ contains
    !> Allocates the memory for the rows; the columns are fixed from here on.
    subroutine start(self)
       type(column_table_type), intent(inout) :: self
-      integer :: rows
+      integer :: rows, status
 
       rows = max(64, min(most_rows, most_values/max(1, self%reals%n)))
-      allocate (self%held_reals(rows, self%reals%n))
-      allocate (self%held_integers(rows, self%integers%n))
-      allocate (self%held_texts(rows, self%texts%n))
+      allocate (self%held_reals(rows, self%reals%n), stat=status)
+      call check_allocation(status)
+      allocate (self%held_integers(rows, self%integers%n), stat=status)
+      call check_allocation(status)
+      allocate (self%held_texts(rows, self%texts%n), stat=status)
+      call check_allocation(status)
       self%started = .true.
    end subroutine start
 
@@ -242,10 +306,15 @@ contains
       type(columns_type), intent(inout) :: columns
       character(len=*), intent(in) :: path   !! in the file
       character(len=256), allocatable :: longer(:)
+      integer :: status
 
-      if (.not. allocated(columns%paths)) allocate (columns%paths(8), columns%partial(8))
+      if (.not. allocated(columns%paths)) then
+         allocate (columns%paths(8), columns%partial(8), stat=status)
+         call check_allocation(status)
+      end if
       if (columns%n == size(columns%paths)) then
-         allocate (longer(2*columns%n))
+         allocate (longer(2*columns%n), stat=status)
+         call check_allocation(status)
          longer(:columns%n) = columns%paths
          call move_alloc(longer, columns%paths)
          columns%partial = [columns%partial, columns%partial]

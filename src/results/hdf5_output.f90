@@ -1,9 +1,9 @@
-!> An HDF5 file from its making to its closing, its groups, and datasets by their addresses; hdf5_file
-!> gives them types.
+!> An HDF5 file from its making to its closing, its groups, and datasets by their addresses;
+!> hdf5_file gives them types.
 !>
-!> A file that is reopened (`modify_claimed`) is made again by the same calls as a new one: groups and
-!> series that are there stay, datasets and attributes are written anew, in their old place where
-!> they fit.
+!> A file that is reopened (`modify_claimed`) is made again by the same calls as a new one: groups
+!> and series that are there stay, datasets and attributes are written anew, in their old place
+!> where they fit.
 !>
 !> It is written aside (part_file): what others see is what was published last, complete and
 !> closed. Before data are written, `reserve` has the disk set their space aside. So a full disk is
@@ -15,8 +15,8 @@ module hdf5_output
    use errors, only: error_type, new_error, status_file
    use clock, only: seconds_now
    use file_calls, only: is_regular, look_at
-   use part_file, only: part_file_type, claim, publish, finish, discard, reserve_room, forget_room, &
-         is_claimed, has_published, part_path
+   use part_file, only: part_file_type, claim, publish, finish, discard, reserve_room, &
+         forget_room, is_claimed, has_published, part_path
    use, intrinsic :: iso_c_binding, only: c_ptr
    use hdf5_calls, only: hsize_t, make_group, put_dataset, storage_type
    use hdf5_changes, only: cut_rows, has_object, overwrite_dataset, remove_object
@@ -28,6 +28,8 @@ module hdf5_output
 
    !> Bytes kept free beyond all that is written in mid-run, for what a run adds when it ends.
    integer(int64), parameter :: margin = 2_int64**18
+   !> The same when there is no more: then the run ends, and what still fits is written.
+   integer(int64), parameter :: last_margin = 2_int64**14
    !> At the end of longer runs the program waits for the disk, seconds. That costs 15 to 40 ms,
    !> as much as a short run; one that a power failure takes away is soon run again.
    real(wp), parameter :: worth_waiting = 1.0_wp
@@ -160,7 +162,7 @@ contains
       if (failed) then
          call self%write_failure('more', error)
       else
-         call reserve_room(self%place, size + bytes + merge(0_int64, margin, self%full), error)
+         call reserve_room(self%place, size + bytes + merge(last_margin, margin, self%full), error)
          self%full = self%full .or. allocated(error)
       end if
    end subroutine reserve
@@ -277,15 +279,17 @@ contains
       class(hdf5_output_type), intent(inout) :: self
       character(len=*), intent(in) :: path
       integer(int64), intent(in) :: n_rows
-      logical, intent(out) :: short   !! it has fewer rows, or is not there
+      character(len=:), allocatable, intent(out) :: short   !! its path if it has not so many
       type(error_type), allocatable, intent(out) :: error   !! status_file
       integer(hsize_t) :: n_missing
       logical :: failed
 
-      short = .not. self%holds(path)
-      if (short) return
+      if (.not. self%holds(path)) then
+         short = path
+         return
+      end if
       call cut_rows(self%id, path, int(n_rows, hsize_t), n_missing, failed)
-      short = n_missing > 0
+      if (n_missing > 0) short = path
       if (failed) call self%write_failure(path, error)
    end subroutine cut
 
@@ -303,9 +307,21 @@ contains
          call self%renew(path, description, storage, dims, address, error)
          return
       end if
+      call self%reserve(room_of(storage, dims), error)
+      if (allocated(error)) return
       call put_dataset(self%id, path, description, storage, dims, address, failed)
       if (failed) call self%write_failure(path, error)
    end subroutine put_values
+
+   !> Bytes that a dataset takes at most, its header included.
+   pure function room_of(storage, dims) result(bytes)
+      type(storage_type), intent(in) :: storage
+      integer(hsize_t), intent(in) :: dims(:)
+      integer(int64) :: bytes
+      integer(int64), parameter :: header = 2048
+
+      bytes = header + storage%bytes*int(product(dims), int64)
+   end function room_of
 
    !> Writes a dataset in the place of one of this path, if there is one.
    subroutine renew_values(self, path, description, storage, dims, address, error)
@@ -320,6 +336,8 @@ contains
       call overwrite_dataset(self%id, path, storage, dims, address, done)
       if (done) return
       call self%remove(path, error)
+      if (allocated(error)) return
+      call self%reserve(room_of(storage, dims), error)
       if (allocated(error)) return
       call put_dataset(self%id, path, description, storage, dims, address, failed)
       if (failed) call self%write_failure(path, error)
@@ -344,7 +362,8 @@ contains
       if (allocated(self%path)) path = self%path
       self%broken = self%broken .or. is_claimed(self%place)
       call new_error(error, status_file, 'cannot write '//object//" to '"//path// &
-            "': disk full, no access any more, or the file is not open")
+            "': the disk fails or is full, there is no access any more, or the file is not open" &
+            //new_line('a')//'  cure: see whether the disk has room and is in order')
    end subroutine write_failure
 
 end module hdf5_output

@@ -22,6 +22,7 @@ module result_file
    use energy_recorder, only: new_energies, record_energies
    use grid_recorder, only: grid_type, new_grid, record_frame
    use model_recorder, only: write_model
+   use restart_group, only: restart_group_type
    use gap_probe, only: gap_probe_type, new_gap_probe, probe_gaps
    use contact_faces, only: contact_face_type, new_contact_faces, find_pressures, find_row_forces, &
          share_contact
@@ -29,7 +30,7 @@ module result_file
    private
 
    public :: result_file_type, open_results, record_increment, close_results, event_name
-   public :: write_system, publish_results
+   public :: write_system, make_parts, flush_results, publish_results
 
    !> Everything open.
    type :: result_file_type
@@ -41,6 +42,7 @@ module result_file
       type(column_table_type) :: events
       type(gap_probe_type) :: gaps
       type(contact_face_type), allocatable :: faces(:)
+      type(restart_group_type) :: restart
       integer :: n_elements = 0
       logical :: has_records = .false.           !! something worth a file of results
    end type result_file_type
@@ -58,12 +60,22 @@ contains
       type(scene_type), intent(in) :: scene
       type(contact_pair_list_type), intent(in) :: list
       type(error_type), allocatable, intent(out) :: error
+
+      call self%file%create_claimed(place, path, error)
+      if (.not. allocated(error)) call make_parts(self, model, scene, list, error)
+   end subroutine open_results
+
+   !> All groups of the file, which is open.
+   subroutine make_parts(self, model, scene, list, error)
+      type(result_file_type), intent(inout) :: self
+      type(model_type), intent(in) :: model
+      type(scene_type), intent(in) :: scene
+      type(contact_pair_list_type), intent(in) :: list
+      type(error_type), allocatable, intent(out) :: error
       integer :: i
 
       self%n_elements = model%elements%n
       call new_plan(self%plan, model)
-      call self%file%create_claimed(place, path, error)
-      if (allocated(error)) return
       call self%file%compress(model%compression)
       call new_grid(self%grid, self%file, model, self%plan, any([(scene%system%structure%groups(i) &
             %element%is_solid, i=1, size(scene%system%structure%groups))]), error)
@@ -77,7 +89,7 @@ contains
       call new_gap_probe(self%gaps, scene)
       call new_contact_faces(self%faces, model, list)
       call write_model(self%file, model, error)
-   end subroutine open_results
+   end subroutine make_parts
 
    !> The table of events; its texts are as long as the longest.
    subroutine new_events(self, list, error)

@@ -11,6 +11,7 @@ module vtkhdf_grid
    use hdf5_file, only: hdf5_file_type, series_integer, series_real
    use kinds, only: int64, wp
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -21,6 +22,11 @@ module vtkhdf_grid
    integer, parameter :: most_values = 2**16   ! points and cells of the gathered frames
    integer, parameter :: fewest_rows = 256     ! in a chunk of a field
    integer, parameter :: most_rows = 2**14     ! likewise
+
+   !> Lists with an entry a frame that is always the same, and the numbers in a row of them.
+   character(len=21), parameter :: step_lists(5) = [character(len=21) :: 'PartOffsets', &
+         'NumberOfParts', 'PointOffsets', 'CellOffsets', 'ConnectivityIdOffsets']
+   integer, parameter :: step_entries(5) = [0, 1, 0, 0, 0], step_components(5) = [0, 0, 0, 1, 1]
 
    !> One quantity at the points or in the cells, for the gathered frames and the next one.
    type :: field_type
@@ -45,6 +51,8 @@ module vtkhdf_grid
       procedure :: add_cell_field
       procedure :: append_frame
       procedure :: count_frames
+      procedure :: count_fields
+      procedure :: cut_back
       procedure :: flush => flush_frames
       generic :: set_values => set_scalars, set_vectors
       procedure, private :: set_scalars, set_vectors
@@ -62,12 +70,15 @@ contains
       integer, contiguous, intent(in) :: connectivity(:)     !! points of the cells, counted from 0
       integer, contiguous, intent(in) :: offsets(:)          !! (n_cells + 1), the first is 0
       type(error_type), allocatable, intent(out) :: error   !! status_file
+      character(len=15), parameter :: counted(3) = [character(len=15) :: 'Points', 'Cells', &
+            'ConnectivityIds']
+      integer :: counts(3), i, status
 
       self%n_points = size(points, 2)
       self%n_cells = size(types)
-      allocate (self%fields(0))
-      allocate (self%times(max(1, min(most_frames, &
-            most_values/max(1, self%n_points, self%n_cells)))))
+      allocate (self%fields(0), self%times(max(1, min(most_frames, &
+            most_values/max(1, self%n_points, self%n_cells)))), stat=status)
+      call check_allocation(status)
       if (size(points, 1) /= 3 .or. size(offsets) /= self%n_cells + 1 &
             .or. offsets(size(offsets)) /= size(connectivity)) then
          call new_error(error, status_internal, 'the arrays of the grid do not fit together')
@@ -76,10 +87,11 @@ contains
       call file%create_group(root, 'the mesh and its frames, in the VTKHDF format', error)
       if (.not. allocated(error)) call file%set_attribute(root, 'Version', [2, 0], error)
       if (.not. allocated(error)) call file%set_attribute(root, 'Type', 'UnstructuredGrid', error)
-      if (.not. allocated(error)) call write_count(file, 'NumberOfPoints', self%n_points, error)
-      if (.not. allocated(error)) call write_count(file, 'NumberOfCells', self%n_cells, error)
-      if (.not. allocated(error)) call write_count(file, 'NumberOfConnectivityIds', &
-            size(connectivity), error)
+      counts = [self%n_points, self%n_cells, size(connectivity)]
+      do i = 1, size(counts)
+         if (.not. allocated(error)) call file%write_dataset(root//'/NumberOf'//trim(counted(i)), &
+               counts(i:i), 'the number in the name', error)
+      end do
       if (.not. allocated(error)) call file%write_dataset(root//'/Points', points, &
             'undeformed places of the points', error)
       if (.not. allocated(error)) call file%write_dataset(root//'/Connectivity', connectivity, &
@@ -91,42 +103,23 @@ contains
       if (.not. allocated(error)) call create_steps(file, error)
    end subroutine create
 
-   subroutine write_count(file, name, number, error)
-      type(hdf5_file_type), intent(inout) :: file
-      character(len=*), intent(in) :: name
-      integer, intent(in) :: number
-      type(error_type), allocatable, intent(out) :: error
-      integer :: list(1)
-
-      list = number
-      call file%write_dataset(root//'/'//name, list, 'the number in the name', error)
-   end subroutine write_count
-
    !> Makes the group with one entry a frame.
    subroutine create_steps(file, error)
       type(hdf5_file_type), intent(inout) :: file
       type(error_type), allocatable, intent(out) :: error
+      integer :: i
 
       call file%create_group(root//'/Steps', 'the frames', error)
       if (.not. allocated(error)) call file%set_attribute(root//'/Steps', 'NSteps', 0, error)
       if (.not. allocated(error)) call file%create_series(root//'/Steps/Values', series_real, 0, &
             most_frames, 'time', error)
-      if (.not. allocated(error)) call create_step_list(file, 'PartOffsets', 0, error)
-      if (.not. allocated(error)) call create_step_list(file, 'NumberOfParts', 0, error)
-      if (.not. allocated(error)) call create_step_list(file, 'PointOffsets', 0, error)
-      if (.not. allocated(error)) call create_step_list(file, 'CellOffsets', 1, error)
-      if (.not. allocated(error)) call create_step_list(file, 'ConnectivityIdOffsets', 1, error)
+      do i = 1, size(step_lists)
+         if (allocated(error)) return
+         call file%create_series(root//'/Steps/'//trim(step_lists(i)), series_integer, &
+               step_components(i), most_frames, &
+               'the same in each frame: the mesh does not change', error)
+      end do
    end subroutine create_steps
-
-   subroutine create_step_list(file, name, n_components, error)
-      type(hdf5_file_type), intent(inout) :: file
-      character(len=*), intent(in) :: name
-      integer, intent(in) :: n_components
-      type(error_type), allocatable, intent(out) :: error
-
-      call file%create_series(root//'/Steps/'//name, series_integer, n_components, &
-            most_frames, 'the same in each frame: the mesh does not change', error)
-   end subroutine create_step_list
 
    !> Adds a quantity at the points; only before the first frame.
    subroutine add_point_field(self, file, name, n_components, description, field, error, partial)
@@ -164,17 +157,20 @@ contains
       integer, intent(in) :: n_components, n_values
       integer, intent(out) :: field
       type(field_type), allocatable :: longer(:)
-      integer :: i
+      integer :: i, status
 
       field = size(self%fields) + 1
-      allocate (longer(field))
+      allocate (longer(field), stat=status)
+      call check_allocation(status)
       do i = 1, field - 1
          longer(i) = self%fields(i)
       end do
       longer(field)%data_path = root//'/'//place//'Data/'//name
       longer(field)%offset_path = root//'/Steps/'//place//'DataOffsets/'//name
       longer(field)%n = n_values
-      allocate (longer(field)%held(n_components, n_values*size(self%times)), source=0.0_wp)
+      allocate (longer(field)%held(n_components, n_values*size(self%times)), source=0.0_wp, &
+            stat=status)
+      call check_allocation(status)
       call move_alloc(longer, self%fields)
    end subroutine add_field
 
@@ -350,17 +346,14 @@ contains
       type(vtkhdf_grid_type), intent(in) :: self
       type(hdf5_file_type), intent(inout) :: file
       type(error_type), allocatable, intent(out) :: error
-      character(len=*), parameter :: steps = root//'/Steps/'
-      integer, dimension(self%n_held) :: zero, one
+      integer :: entries(self%n_held), i
 
-      zero = 0
-      one = 1
-      call file%append(steps//'PartOffsets', zero, error)
-      if (.not. allocated(error)) call file%append(steps//'NumberOfParts', one, error)
-      if (.not. allocated(error)) call file%append(steps//'PointOffsets', zero, error)
-      if (.not. allocated(error)) call file%append(steps//'CellOffsets', zero, error)
-      if (.not. allocated(error)) call file%append(steps//'ConnectivityIdOffsets', zero, error)
-      if (.not. allocated(error)) call file%append(steps//'Values', self%times(:self%n_held), error)
+      do i = 1, size(step_lists)
+         entries = step_entries(i)
+         call file%append(root//'/Steps/'//trim(step_lists(i)), entries, error)
+         if (allocated(error)) return
+      end do
+      call file%append(root//'/Steps/Values', self%times(:self%n_held), error)
    end subroutine append_steps
 
    !> Copies the frame behind one place in the list to the one behind another.
@@ -381,5 +374,38 @@ contains
 
       count_frames = self%n_written + self%n_held
    end function count_frames
+
+   pure integer function count_fields(self)
+      class(vtkhdf_grid_type), intent(in) :: self
+
+      count_fields = size(self%fields)
+   end function count_fields
+
+   !> Leaves the first frames of a reopened file, to go on behind them.
+   subroutine cut_back(self, file, n_frames, short, error)
+      class(vtkhdf_grid_type), intent(inout) :: self
+      type(hdf5_file_type), intent(inout) :: file
+      integer, intent(in) :: n_frames
+      character(len=:), allocatable, intent(out) :: short   !! what has not so many, if something
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+      integer :: i
+
+      do i = 1, size(self%fields)
+         associate (field => self%fields(i))
+            call file%cut(field%data_path, int(n_frames, int64)*field%n, short, error)
+            if (allocated(error) .or. allocated(short)) return
+            call file%cut(field%offset_path, int(n_frames, int64), short, error)
+         end associate
+         if (allocated(error) .or. allocated(short)) return
+      end do
+      do i = 1, size(step_lists)
+         call file%cut(root//'/Steps/'//trim(step_lists(i)), int(n_frames, int64), short, error)
+         if (allocated(error) .or. allocated(short)) return
+      end do
+      call file%cut(root//'/Steps/Values', int(n_frames, int64), short, error)
+      if (allocated(error) .or. allocated(short)) return
+      call file%set_attribute(root//'/Steps', 'NSteps', n_frames, error)
+      self%n_written = n_frames
+   end subroutine cut_back
 
 end module vtkhdf_grid

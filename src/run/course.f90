@@ -1,6 +1,7 @@
 !> Where a run is: the step, the increments taken in it, and what chooses the next one.
 module course
    use kinds, only: wp
+   use text, only: to_text
    use state_archive, only: archive_type
    use steps, only: step_type
    use constraint_rows, only: rows_type
@@ -11,12 +12,13 @@ module course
    implicit none
    private
 
-   public :: course_type, begin_course, is_fresh, find_next
+   public :: course_type, begin_course, is_fresh, find_next, place_name
 
    !> The place of a run between two increments. `control` serves static automatic increments,
    !> `plan` and `twins` a TOLERANCE.
    type :: course_type
       integer :: step = 0                        !! in force, 0 before the first one
+      logical :: entered = .false.               !! its start is recorded, of frequency steps all
       integer :: increment = 0                   !! the last one taken, 0 at the start of the step
       real(wp) :: t_start = 0.0_wp               !! total time at the start of the step
       real(wp) :: step_time = 0.0_wp             !! reached
@@ -41,6 +43,7 @@ contains
       logical :: twice                           !! the motion is computed twice, for a TOLERANCE
 
       call archive%pass('step', self%step)
+      call archive%pass('entered', self%entered)
       call archive%pass('increment', self%increment)
       call archive%pass('t_start', self%t_start)
       call archive%pass('step_time', self%step_time)
@@ -78,6 +81,18 @@ contains
 
       is_fresh = self%increment == 0
    end function is_fresh
+
+   !> Where it is, in words.
+   pure function place_name(self) result(name)
+      type(course_type), intent(in) :: self
+      character(len=:), allocatable :: name
+
+      if (self%increment == 0) then
+         name = 'at the start of step '//to_text(self%step)
+      else
+         name = 'after increment '//to_text(self%increment)//' of step '//to_text(self%step)
+      end if
+   end function place_name
 
    !> Size and end of the next increment where all have one size but the last one, which is shorter
    !> if they do not fill the step. At the end of the step none is left.

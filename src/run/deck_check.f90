@@ -3,10 +3,15 @@ module deck_check
    use kinds, only: wp
    use errors, only: error_type
    use text, only: to_text
+   use threads, only: claim_work_space
+   use model, only: model_type
    use deck_reader, only: read_deck
+   use memory_limit, only: memory_limit_type, find_limit
+   use memory_shortage, only: check_allocation
    use command_line, only: command_type
    use scene_setup, only: simulation_type, build_scene, begin_step
    use memory_estimate, only: memory_type, estimate_memory, add_step_memory, memory_text
+   use memory_refusal, only: check_reading, check_building, check_need, limit_text
    use scene_features, only: feature_list_type, list_features, share_memory
    use scene_advice, only: advice_list_type, advise_step, advise_pairs
    use feature_report, only: report_features, report_advice
@@ -15,7 +20,7 @@ module deck_check
    implicit none
    private
 
-   public :: preview_type, check_deck, prepare, report_preview
+   public :: preview_type, read_model, check_deck, prepare, report_preview
 
    !> Elements up to which a run, and a check, look at each for advice.
    integer, parameter :: most_elements(2) = [5000, 200000]
@@ -23,6 +28,7 @@ module deck_check
    !> What is known of a run before it begins.
    type :: preview_type
       type(memory_type) :: memory
+      type(memory_limit_type) :: limit
       type(feature_list_type) :: features        !! of the dearest step
       type(advice_list_type) :: advice
       logical, allocatable :: may_meet(:)        !! by contact pairs
@@ -38,28 +44,68 @@ contains
       type(preview_type) :: preview
       type(log_type) :: log
 
-      call read_deck(simulation%model, command%deck, command%definitions, error)
+      call read_model(simulation%model, command, preview, error)
       if (allocated(error)) return
       call prepare(simulation, log, .true., preview, error)
       if (allocated(error)) return
-      call say(log, memory_text(preview%memory))
+      call say(log, 'memory: '//memory_text(preview%memory))
+      call report_limit(preview, simulation, log, error)
+      if (allocated(error)) return
       call report_preview(preview, simulation, .true., log)
       call report_notes(simulation, log)
       call say(log, 'the deck is sound')
       call simulation%scene%system%matrices%release()
    end subroutine check_deck
 
+   !> The model of the deck, unless to read it takes more memory than there is.
+   subroutine read_model(model, command, preview, error)
+      type(model_type), intent(inout) :: model
+      type(command_type), intent(in) :: command
+      type(preview_type), intent(inout) :: preview   !! gets its limit
+      type(error_type), allocatable, intent(out) :: error
+
+      call find_limit(preview%limit, command%memory)
+      call check_reading(preview%limit, command%deck, error)
+      if (allocated(error)) return
+      if (preview%limit%of_addresses) call claim_work_space()
+      call read_deck(model, command%deck, command%definitions, error)
+   end subroutine read_model
+
+   !> A check fails where a run would for the limit that the user has set; that of the machine may
+   !> not be the one of the run.
+   subroutine report_limit(preview, simulation, log, error)
+      type(preview_type), intent(in) :: preview
+      type(simulation_type), intent(in) :: simulation
+      type(log_type), intent(in) :: log
+      type(error_type), allocatable, intent(out) :: error
+      type(error_type), allocatable :: refusal
+
+      if (preview%limit%bytes < huge(1.0_wp)) call say(log, 'memory limit: ' &
+            //limit_text(preview%limit))
+      call check_need(preview%limit, preview%memory, simulation, refusal)
+      if (.not. allocated(refusal)) return
+      if (preview%limit%by_user) then
+         call move_alloc(refusal, error)
+      else
+         call say(log, 'warning: it would be refused here: '//refusal%message)
+      end if
+   end subroutine report_limit
+
    !> Builds the scene and goes through all steps without time passing, for their errors.
    subroutine prepare(simulation, log, aloud, preview, error)
       type(simulation_type), intent(inout) :: simulation
       type(log_type), intent(in) :: log
       logical, intent(in) :: aloud
-      type(preview_type), intent(out) :: preview
+      type(preview_type), intent(inout) :: preview   !! with its limit
       type(error_type), allocatable, intent(out) :: error
+      integer :: status
 
+      call check_building(preview%limit, simulation%model, error)
+      if (allocated(error)) return
       call build_scene(simulation, error)
       if (allocated(error)) return
-      allocate (preview%may_meet(size(simulation%contact%names)), source=.false.)
+      allocate (preview%may_meet(size(simulation%contact%names)), source=.false., stat=status)
+      call check_allocation(status)
       if (aloud) call report_model(simulation, log)
       call go_through_steps(simulation, log, aloud, preview, error)
       if (allocated(error)) then
@@ -69,6 +115,8 @@ contains
       call estimate_memory(preview%memory, simulation)
       call share_memory(preview%features, preview%memory)
       call name_idle_pairs(simulation, preview)
+      if (.not. aloud) call check_need(preview%limit, preview%memory, simulation, error)
+      if (allocated(error)) call simulation%scene%system%matrices%release()
    end subroutine prepare
 
    !> Brings every step into force once, looks at what it will take, and lets its time pass.

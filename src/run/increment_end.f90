@@ -10,16 +10,17 @@ module increment_end
    use result_file, only: record_increment
    use run_log, only: log_type, note, write_status, has_line
    use progress, only: show_progress
-   use stop_request, only: keep_watch, stop_if_asked
+   use stop_request, only: keep_watch, look_for_stop, stop_run
    use scene_setup, only: simulation_type
    use increment_checks, only: check_finite, check_energies, check_interpolation, check_balance, &
          needs_energies
-   use course, only: course_type
-   use run_output, only: output_type, publish_now_and_then
+   use course, only: course_type, place_name
+   use run_output, only: output_type
+   use state_keeping, only: publish_increment
    implicit none
    private
 
-   public :: finish_increment, count_events
+   public :: finish_increment, stop_if_asked, count_events
 
 contains
 
@@ -34,16 +35,27 @@ contains
       call keep_watch(output%watch)
       call record(simulation, course, output, error)
       if (allocated(error)) return
-      call publish_now_and_then(output, simulation%scene%system%cost, error)
-      if (allocated(error)) return
       call next_increment(simulation%scene%system%cost)
       call check_end(simulation, course, error)
       if (allocated(error)) return
       ! all of the increment is recorded: from here a run can be taken up again
-      if (is_last(simulation%model%steps, course)) return
-      call stop_if_asked(output%watch, course%step, course%increment, &
-            simulation%motion%motion%t, error)
+      call publish_increment(simulation, course, output, error)
+      if (allocated(error)) return
+      call stop_if_asked(simulation, course, output, error)
    end subroutine finish_increment
+
+   !> Stops the run before the next increment if something asks for it.
+   subroutine stop_if_asked(simulation, course, output, error)
+      type(simulation_type), intent(in) :: simulation
+      type(course_type), intent(in) :: course
+      type(output_type), intent(inout) :: output
+      type(error_type), allocatable, intent(out) :: error   !! status_interrupted
+      logical :: asked
+
+      call look_for_stop(output%watch, asked)
+      if (.not. asked .or. is_last(simulation%model%steps, course)) return
+      call stop_run(output%watch, place_name(course), simulation%motion%motion%t, error)
+   end subroutine stop_if_asked
 
    !> Whether the run is over.
    pure logical function is_last(steps, course)
@@ -56,7 +68,7 @@ contains
    !> Energies, results, status and progress.
    subroutine record(simulation, course, output, error)
       type(simulation_type), intent(inout) :: simulation
-      type(course_type), intent(in) :: course
+      type(course_type), intent(inout) :: course
       type(output_type), intent(inout) :: output
       type(error_type), allocatable, intent(out) :: error
       integer :: n_events

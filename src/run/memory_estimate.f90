@@ -6,17 +6,19 @@ module memory_estimate
    use memory_use, only: resident_memory
    use skyline_matrix, only: profile_type, profile_entries
    use panel_layout, only: panel_layout_type, new_panel_layout
-   use steps, only: step_type, procedure_static, procedure_dynamic, solver_mumps
+   use steps, only: step_type, procedure_static, procedure_dynamic, &
+         procedure_frequency, solver_mumps
    use surfaces, only: method_transformation, method_penalty
    use effective_system, only: most_kept
    use compliance_store, only: most_entries
+   use eigen_solver, only: condensed_below => small
    use output_plan, only: plan_type, new_plan
    use scene_setup, only: simulation_type
    implicit none
    private
 
-   public :: memory_type, item_length, estimate_memory, add_step_memory, memory_text
-   public :: item_matrices, item_frames, item_rows, item_contact
+   public :: memory_type, item_length, estimate_memory, add_step_memory, memory_text, megabytes
+   public :: item_model, item_matrices, item_state, item_frames, item_rows, item_contact
 
    integer, parameter :: item_length = 24
    integer, parameter :: n_items = 6
@@ -151,12 +153,39 @@ contains
             entries = sparse_entries(system%profile%n)
          else
             entries = skyline_entries(system%profile)
-            if (system%structure%is_linear .and. profile_entries(system%profile) <= most_kept &
-                  .and. entries > real(system%profile%n, wp)) n = n + 3.0_wp
+            if (step%procedure == procedure_frequency) then
+               entries = mode_entries(simulation, step, entries)
+               n = 1.0_wp
+            else if (system%structure%is_linear .and. profile_entries(system%profile) <= most_kept &
+                  .and. entries > real(system%profile%n, wp)) then
+               n = n + 3.0_wp
+            end if
          end if
       end associate
       self%items(item_matrices) = max(self%items(item_matrices), real_bytes*n*entries)
    end subroutine add_step_memory
+
+   !> The most that free vibrations hold (linalg/eigen_solver): K, M and the factors with Lanczos'
+   !> basis or with the condensed matrices, or the matrices of the residuals with the modes.
+   function mode_entries(simulation, step, of_matrix) result(entries)
+      type(simulation_type), intent(in) :: simulation
+      type(step_type), intent(in) :: step
+      real(wp), intent(in) :: of_matrix          !! entries
+      real(wp) :: entries, n, n_massive, n_wanted, n_basis
+
+      associate (system => simulation%scene%system)
+         n = real(system%structure%map%n_freedoms, wp)
+         n_massive = real(count(.not. system%massless), wp)
+      end associate
+      n_wanted = min(real(step%n_modes, wp), n_massive)
+      if (2.0_wp*n_wanted <= n_massive .and. n_massive > real(condensed_below, wp)) then
+         n_basis = min(n_massive, max(2.0_wp*n_wanted + 5.0_wp, n_wanted + 22.0_wp))
+         entries = n*(n_basis + n_wanted) + n_basis**2
+      else
+         entries = 3.0_wp*n_massive**2
+      end if
+      entries = max(3.0_wp*of_matrix + entries, 5.0_wp*of_matrix + 2.0_wp*n*n_wanted)
+   end function mode_entries
 
    !> What is stored of a skyline, blocks filled up with zeros.
    function skyline_entries(profile) result(entries)
@@ -201,13 +230,13 @@ contains
       total = max(self%start_up, sum(self%items))
    end function total
 
-   !> "memory: 120 MB (model 80, matrices 30, ...)".
+   !> "120 MB (model 80, matrices 30, ...)".
    pure function memory_text(self) result(line)
       type(memory_type), intent(in) :: self
       character(len=:), allocatable :: line
       integer :: i
 
-      line = 'memory: '//megabytes(self%total())//' MB ('
+      line = megabytes(self%total())//' MB ('
       do i = 1, n_items
          if (i > 1) line = line//', '
          line = line//trim(names(i))//' '//megabytes(self%items(i))
@@ -215,11 +244,16 @@ contains
       line = line//'; at most '//megabytes(self%start_up)//' at the start)'
    end function memory_text
 
+   !> A number of bytes for the eye.
    pure function megabytes(bytes) result(text)
       real(wp), intent(in) :: bytes
       character(len=:), allocatable :: text
 
-      text = to_text(1.0e-6_wp*bytes, 3)
+      if (bytes < 1.0e9_wp) then
+         text = to_text(1.0e-6_wp*bytes, 3)
+      else
+         text = to_text(nint(min(1.0e-6_wp*bytes, 1.0e9_wp)))
+      end if
    end function megabytes
 
 end module memory_estimate

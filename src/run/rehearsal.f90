@@ -11,7 +11,7 @@ module rehearsal
    use surfaces, only: method_transformation
    use stability_limit, only: stable_frequency
    use run_log, only: log_type, say
-   use stop_request, only: watch_type, keep_watch, stop_if_asked
+   use stop_request, only: watch_type, keep_watch, look_for_stop, stop_run
    use scene_setup, only: simulation_type
    use increments, only: checkpoint_type, keep_state, put_back
    use twin_motion, only: twins_type, twin_settings_type, start_twins, take_fine_increment, &
@@ -190,6 +190,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(twins_type) :: twins
       real(wp) :: t
+      logical :: asked
 
       t = simulation%motion%motion%t
       call set_sizes(plan)
@@ -200,8 +201,11 @@ contains
          simulation%scene%n_events = 0
          call compare_twins(twins, simulation)
          call keep_watch(watch)
-         call stop_if_asked(watch, i_step, 0, t, error)
-         if (allocated(error)) return
+         call look_for_stop(watch, asked)
+         if (asked) then
+            call stop_run(watch, 'in a rehearsal of step '//to_text(i_step), t, error)
+            return
+         end if
          if (twins%n <= plan%most) cycle
          call refuse(plan, real(twins%n, wp), error)
          return

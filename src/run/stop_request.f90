@@ -10,7 +10,8 @@ module stop_request
    implicit none
    private
 
-   public :: watch_type, start_watch, start_looking, keep_watch, stop_if_asked, remove_stop_files
+   public :: watch_type, start_watch, start_looking, keep_watch, look_for_stop, stop_run, &
+         remove_stop_files
 
    !> What is looked at, and when. One that has not been started sees signals alone.
    type :: watch_type
@@ -68,32 +69,36 @@ contains
       call keep_pace(self%pace)
    end subroutine keep_watch
 
-   !> Stops the run between two increments if something asks for it. A stop file that is obeyed is
-   !> removed.
-   subroutine stop_if_asked(self, i_step, increment, t, error)
+   !> Looks, between two increments, whether something asks the run to stop. A stop file that is
+   !> obeyed is removed.
+   subroutine look_for_stop(self, asked)
       type(watch_type), intent(inout) :: self
-      integer, intent(in) :: i_step, increment   !! the last one taken, 0 for none
+      logical, intent(out) :: asked
+
+      if (.not. allocated(self%reason)) then
+         if (signal_came()) then
+            self%reason = signal_name()
+         else if (self%pace%fresh) then
+            call look_around(self)
+         end if
+      end if
+      asked = allocated(self%reason)
+   end subroutine look_for_stop
+
+   !> The error with which the run then ends.
+   subroutine stop_run(self, place, t, error)
+      type(watch_type), intent(in) :: self
+      character(len=*), intent(in) :: place      !! where it stops
       real(wp), intent(in) :: t                  !! total time
       type(error_type), allocatable, intent(out) :: error   !! status_interrupted
-      character(len=:), allocatable :: place
 
-      if (.not. allocated(self%reason)) call look_around(self)
-      if (.not. allocated(self%reason)) return
-      place = 'at the start of step '//to_text(i_step)
-      if (increment > 0) place = 'after increment '//to_text(increment)//' of step ' &
-            //to_text(i_step)
       call new_error(error, status_interrupted, 'interrupted by '//self%reason//' '//place &
             //', total time '//to_text(t))
-   end subroutine stop_if_asked
+   end subroutine stop_run
 
    subroutine look_around(self)
       type(watch_type), intent(inout) :: self
 
-      if (signal_came()) then
-         self%reason = signal_name()
-         return
-      end if
-      if (.not. self%pace%fresh) return
       self%longest = max(self%pace%interval, memory*self%longest)
       if (self%pace%now + surprise*self%longest + self%saving >= self%deadline) then
          self%reason = 'the time limit of '//to_text(self%limit)//' s'

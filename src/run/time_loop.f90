@@ -8,13 +8,13 @@ module time_loop
    use command_line, only: version_text
    use scene_setup, only: simulation_type
    use step_start, only: start_step
-   use stop_request, only: start_looking, stop_if_asked
+   use stop_request, only: start_looking
    use increment_checks, only: check_finite, check_energies
    use run_report, only: report_step
-   use course, only: course_type, is_fresh
+   use course, only: course_type
    use course_increments, only: take_next, report_course
    use run_output, only: output_type, publish_after_start
-   use increment_end, only: finish_increment
+   use increment_end, only: finish_increment, stop_if_asked
    implicit none
    private
 
@@ -30,12 +30,15 @@ contains
       type(error_type), allocatable, intent(out) :: error
       logical :: taken
 
-      if (is_fresh(course)) then
+      if (.not. course%entered) then
          call enter_step(simulation, course, output, error)
          if (allocated(error)) return
       else
          output%iterations = simulation%scene%n_iterations
       end if
+      call start_looking(output%watch)
+      call stop_if_asked(simulation, course, output, error)
+      if (allocated(error)) return
       do
          call take_next(simulation, course, output%log, output%watch, taken, error)
          if (allocated(error) .or. .not. taken) exit
@@ -49,7 +52,7 @@ contains
    !> The start of a step, that of the first one with its records.
    subroutine enter_step(simulation, course, output, error)
       type(simulation_type), intent(inout) :: simulation
-      type(course_type), intent(in) :: course
+      type(course_type), intent(inout) :: course
       type(output_type), intent(inout) :: output
       type(error_type), allocatable, intent(out) :: error
       integer :: outer
@@ -60,9 +63,7 @@ contains
       if (allocated(error)) return
       call report_step(simulation, course%step, output%log)
       if (course%step == 1) call record_start(simulation, output, error)
-      if (allocated(error)) return
-      call start_looking(output%watch)
-      call stop_if_asked(output%watch, course%step, 0, simulation%motion%motion%t, error)
+      course%entered = .not. allocated(error)
    end subroutine enter_step
 
    !> The system of equations and the initial state.

@@ -2,11 +2,11 @@
 !> a run built anew: the state collected there at once must be the one put in, and the states at the
 !> ends of both runs the same, every entry to the bit.
 !>
-!>    resume_states DECK PLACES [AFTER [NAME=VALUE ...]]
+!>    resume_states DECK PLACES [MOST [NAME=VALUE ...]]
 !>
 !> PLACES states are taken, all if the run has no more increments; the first two, the last, and
-!> those at the ends of steps always. AFTER, if not 0, limits the increments that a resumed run
-!> takes. Ends with status 1 where something differs.
+!> those at the ends of steps always. MOST, if not 0, limits the increments of the run. Ends with
+!> status 1 where something differs.
 program resume_states
    use, intrinsic :: iso_fortran_env, only: output_unit
    use kinds, only: wp
@@ -26,7 +26,7 @@ program resume_states
    type(definition_type), allocatable :: definitions(:)
    type(archive_type), allocatable :: states(:)
    logical, allocatable :: wanted(:)
-   integer :: n_places, after, n_bad
+   integer :: n_places, most, n_bad
 
    call read_words()
    call run_straight()
@@ -34,7 +34,7 @@ program resume_states
    call resume_all()
    write (output_unit, '(a)') to_text(size(wanted))//' increments, '//to_text(count(wanted)) &
          //' states, '//to_text(n_bad)//' differences'
-   if (n_bad > 0) error stop 1
+   if (n_bad > 0) stop 1
 
 contains
 
@@ -46,9 +46,9 @@ contains
       deck = trim(word)
       call get_command_argument(2, word)
       read (word, *) n_places
-      after = 0
+      most = 0
       call get_command_argument(3, word)
-      if (len_trim(word) > 0) read (word, *) after
+      if (len_trim(word) > 0) read (word, *) most
       allocate (definitions(max(0, command_argument_count() - 3)))
       do i = 1, size(definitions)
          call get_command_argument(i + 3, word)
@@ -69,13 +69,14 @@ contains
       call open_run(run, deck, definitions, error)
       call must_be_sound(error)
       allocate (ends(0))
-      do
+      do while (most == 0 .or. size(ends) < most)
          call take_one(run, taken, error)
          call must_be_sound(error)
          if (.not. taken) exit
          ends = [ends, run%course%step_time >= run%simulation%model%steps(run%course%step)%duration]
       end do
       n = size(ends)
+      if (n == 0) stop 'the run has no increments'
       wanted = ends
       wanted([1, min(2, n), n]) = .true.
       do i = 1, n_places
@@ -119,7 +120,7 @@ contains
       type(archive_type) :: state
       type(error_type), allocatable :: error
       logical :: taken
-      integer :: i, last
+      integer :: i
 
       call open_run(run, deck, definitions, error)
       call must_be_sound(error)
@@ -127,9 +128,7 @@ contains
       call must_be_sound(error)
       call collect_state(run%simulation, run%course, state)
       call compare(state, states(place), 'at increment '//to_text(place)//' at once')
-      last = size(wanted)
-      if (after > 0) last = min(last, place + after)
-      do i = place + 1, last
+      do i = place + 1, size(wanted)
          call take_one(run, taken, error)
          call must_be_sound(error)
          if (.not. wanted(i)) cycle
@@ -155,7 +154,7 @@ contains
 
       if (.not. allocated(error)) return
       write (output_unit, '(a)') error%message
-      error stop 1
+      stop 1
    end subroutine must_be_sound
 
 end program resume_states

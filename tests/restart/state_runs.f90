@@ -7,6 +7,7 @@ module state_runs
    use deck_reader, only: read_deck, definition_type
    use energy_ledger, only: close_increment
    use run_log, only: log_type
+   use stop_request, only: watch_type
    use scene_setup, only: simulation_type, initial_motion
    use deck_check, only: preview_type, prepare
    use step_start, only: start_step
@@ -24,6 +25,7 @@ module state_runs
       type(simulation_type) :: simulation
       type(course_type) :: course
       type(log_type) :: log
+      type(watch_type) :: watch
    end type run_type
 
 contains
@@ -56,9 +58,10 @@ contains
       taken = .false.
       associate (simulation => self%simulation, course => self%course)
          if (course%step == 0) call begin_course(course, 1, simulation%motion%motion%t)
+         if (simulation%model%steps(course%step)%procedure == procedure_frequency) return
          if (is_fresh(course)) call start_step(simulation, course%step, error)
          if (allocated(error)) return
-         call take_next(simulation, course, self%log, taken, error)
+         call take_next(simulation, course, self%log, self%watch, taken, error)
          if (allocated(error)) return
          if (taken) then
             call finish(self)

@@ -61,7 +61,7 @@ class Job:
         self.output, self.errors = self.process.communicate(timeout=300)
         self.seconds = time.perf_counter() - self.began
         self.status = self.process.returncode
-        lines = self.log.read_text().splitlines() if self.log.exists() else ['']
+        lines = (self.log.read_text() if self.log.exists() else '').splitlines() or ['']
         self.said, self.last_line = '\n'.join(lines), lines[-1]
         return self
 

@@ -23,6 +23,7 @@ SDOF = (INPUT / 'sdof/sdof.inp').read_text()
 CRASHED = re.compile(r'HDF5-DIAG|[Bb]acktrace|Segmentation|runtime error|signal|core dumped|'
                      r'corrupt|free\(\)')
 LIMIT = 60.0       # seconds: a run that takes longer hangs
+PUBLISHED = 5.3    # seconds of a run after which it has published for the first time
 
 
 def endless(every=1):
@@ -50,12 +51,13 @@ def without_privileges():
 class Started:
     """A run that goes on."""
 
-    def __init__(self, place, words, prepare, **streams):
+    def __init__(self, place, words, prepare, env=None, **streams):
         streams = {'stdout': subprocess.PIPE, 'stderr': subprocess.PIPE, **streams}
         self.place = place
         self.process = subprocess.Popen(
             [PROGRAM, *words], cwd=place.folder, stdin=subprocess.DEVNULL, text=True,
-            errors='replace', preexec_fn=prepare, env={**os.environ, 'OPENBLAS_NUM_THREADS': '1'},
+            errors='replace', preexec_fn=prepare,
+            env={**os.environ, 'OPENBLAS_NUM_THREADS': '1', **(env or {})},
             **streams)
         self.began = time.monotonic()
         self.status, self.text = None, ''

@@ -26,6 +26,7 @@ from same_results import differences
 CASES = {'wall': 500, 'bar': 100, 'plastic': 3, 'friction': 20, 'tolerance': 200, 'explicit': 500}
 AIMS = ('uniform', 'uniform', 'uniform', 'start', 'publication', 'end')
 KILL_AGAIN = 0.4         # the chance that a run taken up again is killed too
+LENGTH = 0.25            # of the runs: a quarter of a second
 FILE_ERROR = 3
 
 
@@ -40,7 +41,7 @@ class Victim:
     def __init__(self, checks, name, random_numbers):
         self.checks, self.name, self.random = checks, name, random_numbers
         self.folder = scratch_folder()
-        self.deck = write_case(name, self.folder / f'{name}.inp', CASES[name])
+        self.deck = write_case(name, self.folder / f'{name}.inp', CASES[name], LENGTH)
         self.part, self.next = self.folder / 'part.h5', self.folder / 'part.h5.next'
         job = Job(self.deck, self.folder / 'full.h5').end()
         self.full, self.seconds = job.result, job.seconds

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from background_run import Job, read_all
+from background_run import Job, ignore_hang_up, read_all
 from carom_case import Checks, scratch_folder
 from read_with_vtk import check as check_with_vtk
 from restart_cases import write_case
@@ -50,7 +50,7 @@ class Case:
         self.checks.true(f'--restart {job.result}' in job.said, f'{name}: the log says how to go on')
         self.checks.true(f'interrupted by {reason}' in job.errors, f'{name}: so does the terminal')
         columns = read_all(job.result)
-        n = len(columns['history/time'])
+        n = len(columns.get('history/time', ()))
         self.checks.true(n < len(self.columns['history/time']) and rows in (None, n),
                          f'{name}: {n} of {len(self.columns["history/time"])} rows')
         unlike = [path for path, data in columns.items() if path.startswith(('history/', 'energy/'))
@@ -129,11 +129,26 @@ def check_rehearsals(checks):
 
 
 def check_steps(checks):
-    """A stop in the second step of three, and one before a frequency step."""
+    """Stops in a step after a frequency step, and at the end of the frequency step itself."""
+    deck = write_case('wall', scratch_folder() / 'wall.inp').read_text()
+    steps = deck.index('*STEP')
+    dynamic, modes = deck[steps:], '*STEP\n*FREQUENCY\n1\n*NODE FILE\nU\n*END STEP\n'
+    case = Case(checks, 'steps', deck[:steps] + dynamic.replace('40', '8') + modes
+                + dynamic.replace('40', '30'))
+    job = case.job().until_it_computes(0.6 * case.seconds).send(signal.SIGTERM)
+    case.stopped(job, 'SIGTERM')
+    checks.true('of step 3' in job.last_line, 'steps: stopped in the third one')
+    case.goes_on(job)
+    case = Case(checks, 'modes', deck[:steps] + modes + dynamic.replace('40', '2'))
+    case.deck.with_suffix('.stop').touch()
+    job = case.job()
+    case.stopped(job, f'the file {case.deck.with_suffix(".stop")}', rows=0)
+    checks.true('after step 1' in job.last_line, 'modes: stopped after the frequency step')
+    case.goes_on(job)
 
 
 def check_second_signal(checks):
-    """A second signal does not wait for what takes long; two at once are one request."""
+    """A second signal does not wait for what takes long."""
     mesh = Mesh(60, 60, 4)
     deck = scratch_folder() / 'modes.inp'
     deck.write_text(mesh.text('CPE4') + material(1000.0, 0.3) + '*BOUNDARY\n1, 1, 2\n2, 2\n'
@@ -148,13 +163,30 @@ def check_second_signal(checks):
     checks.true('stopped at once' in job.errors, f'a second signal: said {job.errors!r}')
 
 
+def check_harmless_signals(checks):
+    """Two signals at once are one request; SIGHUP does nothing under nohup."""
+    case = Case(checks, 'friction')
+    job = case.job().until_it_computes(0.3 * case.seconds)
+    job.send(signal.SIGSTOP).send(signal.SIGTERM).send(signal.SIGINT).send(signal.SIGCONT)
+    job.end()
+    checks.true(job.status == INTERRUPTED and 'stopped: interrupted by SIG' in job.last_line,
+                f'two signals at once: the state is saved, {job.last_line}')
+    case.goes_on(job)
+    job = case.job(prepare=ignore_hang_up).until_it_computes(0.3 * case.seconds)
+    job.send(signal.SIGHUP).end()
+    checks.true(job.status == 0 and job.last_line == 'completed', 'nohup: SIGHUP does not stop a run')
+    checks.true(not differences(case.full, job.result), 'nohup: nor does it change results')
+
+
 def main():
     checks = Checks()
     check_signals(checks)
     check_stop_files(checks)
     check_time_limit(checks)
     check_rehearsals(checks)
+    check_steps(checks)
     check_second_signal(checks)
+    check_harmless_signals(checks)
     checks.finish()
 
 
