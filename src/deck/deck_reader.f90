@@ -3,6 +3,7 @@ module deck_reader
    use display, only: displayed
    use errors, only: error_type
    use memory_shortage, only: check_allocation
+   use memory_shortage, only: check_allocation
    use places, only: fail_at, note_at, source_line
    use model, only: model_type
    use histories, only: boundary_type, nodal_value_type
@@ -109,7 +110,7 @@ contains
       type(model_type), intent(inout) :: model
       type(deck_type), intent(in) :: deck
       character(len=:), allocatable :: text
-      integer :: pass, i, j, n
+      integer :: pass, i, j, n, status
 
       do pass = 1, 2                             ! counts, then copies
          n = 0
@@ -119,7 +120,10 @@ contains
                call put_line(n, source_line(model%source, deck%data(j)%file, deck%data(j)%line))
             end do
          end do
-         if (pass == 1) allocate (character(len=n) :: text)
+         if (pass == 1) then
+            allocate (character(len=n) :: text, stat=status)
+            call check_allocation(status)
+         end if
       end do
       model%heading = displayed(text)
 

@@ -107,8 +107,8 @@ contains
                'includes may have 2 147 483 646 bytes')
          return
       end if
-      allocate (character(len=int(length)) :: content, stat=status)
       reason = 'there is no memory for its '//to_text(length)//' bytes'
+      allocate (character(len=int(length)) :: content, stat=status)
       if (status == 0) call read_bytes(unit, content, status, reason)
       close (unit)
       if (status /= 0) then

@@ -3,6 +3,7 @@ module symbols
    use kinds, only: wp
    use errors, only: error_type, new_error, status_usage
    use memory_shortage, only: check_allocation
+   use memory_shortage, only: check_allocation
    use places, only: place_type, source_type, source_line, fail_at
    use properties, only: name_length
    use words, only: squeezed, advice, is_blank
@@ -211,9 +212,11 @@ contains
       integer, intent(inout) :: length           !! characters in use
       character(len=*), intent(in) :: piece
       character(len=:), allocatable :: longer
+      integer :: status
 
       if (length + len(piece) > len(text)) then
-         allocate (character(len=2*length + len(piece)) :: longer)
+         allocate (character(len=2*length + len(piece)) :: longer, stat=status)
+         call check_allocation(status)
          longer(:length) = text(:length)
          call move_alloc(longer, text)
       end if

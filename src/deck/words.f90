@@ -1,6 +1,7 @@
 !> Words of the deck: comparison without case and blanks, and advice on misspelt ones.
 module words
    use text, only: upper_case
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -16,9 +17,10 @@ contains
       character(len=*), intent(in) :: string
       character(len=:), allocatable :: word
       character(len=:), allocatable :: buffer    ! not on the stack: lines may be very long
-      integer :: i, n
+      integer :: i, n, status
 
-      allocate (character(len=len(string)) :: buffer)
+      allocate (character(len=len(string)) :: buffer, stat=status)
+      call check_allocation(status)
       n = 0
       do i = 1, len(string)
          if (is_blank(string(i:i))) cycle

@@ -1,6 +1,7 @@
 !> Putting a model together: appending in amortised constant time, and sorting.
 module model_building
    use memory_shortage, only: check_allocation
+   use memory_shortage, only: check_allocation
    use histories, only: boundary_type, nodal_value_type
    use places, only: place_type
    implicit none
@@ -90,7 +91,10 @@ contains
       type(place_type), allocatable :: longer(:)
       integer :: status
 
-      if (.not. allocated(list)) allocate (list(8))
+      if (.not. allocated(list)) then
+         allocate (list(8), stat=status)
+         call check_allocation(status)
+      end if
       if (n == size(list)) then
          allocate (longer(2*n + 8), stat=status)
          call check_allocation(status)

@@ -5,6 +5,7 @@ module command_line
    use text, only: upper_case, to_text
    use numbers, only: parse_integer, parse_real
    use errors, only: error_type, new_error, status_usage
+   use memory_shortage, only: check_allocation
    use deck_reader, only: definition_type
    implicit none
    private
@@ -45,7 +46,7 @@ contains
       text = 'carom '//version_text//': structural dynamics with impact'//nl//nl// &
             'usage: carom run DECK [-o OUT.h5] [--define NAME=VALUE]... [--threads N] [--quiet]' &
             //nl// &
-            '                      [--overwrite | --restart OLD.h5] [--memory SIZE]'//nl// &
+            '                      [--overwrite] [--restart OLD.h5] [--memory SIZE]'//nl// &
             '                      [--time-limit TIME]'//nl// &
             '       carom check DECK [--define NAME=VALUE]... [--memory SIZE]'//nl// &
             '       carom --version | --help'//nl//nl// &
@@ -56,7 +57,7 @@ contains
             '  --threads threads to work with (default: OMP_NUM_THREADS, else 1)'//nl// &
             '  --quiet  no progress on the terminal'//nl// &
             '  --overwrite  replaces results that exist'//nl// &
-            '  --restart  goes on from the state saved in OLD.h5'//nl// &
+            '  --restart  goes on from the state saved in OLD.h5, there or in OUT.h5'//nl// &
             '  --memory  what the run may take, as 500M or 12G (default: the machine''s)'//nl// &
             '  --time-limit  stops then with the state saved; seconds or HH:MM:SS'//nl//nl// &
             'exit status: 0 done, 1 usage, 2 deck, 3 file, 4 numerical, 5 interrupted, 6 internal'
@@ -67,9 +68,10 @@ contains
       type(command_type), intent(out) :: command
       type(error_type), allocatable, intent(out) :: error
       character(len=:), allocatable :: word
-      integer :: i
+      integer :: i, status
 
-      allocate (command%definitions(0))
+      allocate (command%definitions(0), stat=status)
+      call check_allocation(status)
       if (command_argument_count() == 0) return
       select case (argument(1))
       case ('run')
@@ -220,8 +222,13 @@ contains
          call usage_error(error, 'no deck given')
          return
       end if
-      if (allocated(command%output)) then
+      if (command%kind == command_check .and. allocated(command%restart)) then
+         call usage_error(error, '--restart goes with run: a check starts nothing')
+      else if (allocated(command%output)) then
          call check_ending(command%output, error)
+         return
+      else if (allocated(command%restart)) then
+         command%output = command%restart
          return
       end if
       dot = index(command%deck, '.', back=.true.)
@@ -256,10 +263,11 @@ contains
    function argument(i) result(word)
       integer, intent(in) :: i
       character(len=:), allocatable :: word
-      integer :: length
+      integer :: length, status
 
       call get_command_argument(i, length=length)
-      allocate (character(len=length) :: word)
+      allocate (character(len=length) :: word, stat=status)
+      call check_allocation(status)
       call get_command_argument(i, word)
    end function argument
 
