@@ -87,7 +87,8 @@ contains
       integer, allocatable :: n(:)
       integer :: e, g, status
 
-      allocate (n(size(groups)), source=0)
+      allocate (n(size(groups)), source=0, stat=status)
+      call check_allocation(status)
       do e = 1, size(key)
          if (key(e) > 0) n(key(e)) = n(key(e)) + 1
       end do
