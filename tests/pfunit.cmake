@@ -22,13 +22,16 @@ endfunction()
 
 # For the generated files: long lines, no -Werror, a module directory of their own. What a test
 # must print to pass: under pFUnit a program that executes `stop`, or runs no test, has status 0.
+# And what it must not: with that, ctest no longer looks at the status, by which sanitizers fail.
 function(pfunit_set_test_properties name)
   target_compile_options(${name} PRIVATE
     $<$<COMPILE_LANG_AND_ID:Fortran,GNU>:-ffree-line-length-none -Wno-error>)
   set_target_properties(${name} PROPERTIES
     Fortran_MODULE_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/${name}_modules")
   set_tests_properties(${name} PROPERTIES PASS_REGULAR_EXPRESSION
-    "OK[\r\n]+ \\([1-9][0-9]* test")
+    "OK[\r\n]+ \\([1-9][0-9]* test"
+    FAIL_REGULAR_EXPRESSION "AddressSanitizer|LeakSanitizer|runtime error:")
+  set_property(GLOBAL APPEND PROPERTY carom_unit_tests ${name})
 endfunction()
 
 if(NOT PFUNIT_LITE)

@@ -60,8 +60,10 @@ module cost_account
       real(wp), private :: started = 0.0_wp, since = 0.0_wp, watched = 0.0_wp
       real(wp), private :: started_processor = 0.0_wp
       real(wp), private :: spent(phase_untimed, n_columns) = 0.0_wp
+      real(wp), private :: before(2 + n_phases) = 0.0_wp   ! elapsed, processor, phases: other runs
    contains
       procedure :: pass_state
+      procedure :: pass_times
    end type cost_type
 
 contains
@@ -78,6 +80,24 @@ contains
       call archive%pass('contact_searches', self%contact_searches)
       call archive%pass('contact_rows', self%contact_rows)
    end subroutine pass_state
+
+   !> What runs have taken so far, this one included; read, it is what those before have taken.
+   subroutine pass_times(self, archive)
+      class(cost_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+      type(cost_type) :: now
+      real(wp) :: seconds(size(self%before))
+
+      if (.not. archive%reading) then
+         now = self
+         call stop_clock(now)
+         seconds = [now%elapsed, now%processor, now%seconds]
+      end if
+      call archive%enter('cost')
+      call archive%pass_fixed('seconds', seconds)
+      call archive%leave()
+      if (archive%reading) self%before = seconds
+   end subroutine pass_times
 
    !> Starts the clock.
    subroutine start_clock(self)
@@ -182,6 +202,9 @@ contains
       ! the rest: since the last change, and untimed increments without a timed one among them
       self%seconds(phase_other) = 0.0_wp
       self%seconds(phase_other) = self%elapsed - sum(self%seconds)
+      self%elapsed = self%elapsed + self%before(1)
+      self%processor = self%processor + self%before(2)
+      self%seconds = self%seconds + self%before(3:)
    end subroutine stop_clock
 
 end module cost_account

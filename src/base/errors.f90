@@ -1,6 +1,7 @@
 !> Errors as values: whatever can fail returns one, and only the main program stops.
 module errors
    use memory_shortage, only: check_allocation
+   use display, only: displayed
    implicit none
    private
 
@@ -26,7 +27,7 @@ module errors
 
 contains
 
-   !> Makes an error of the given exit status.
+   !> Makes an error of the given exit status; what cannot be shown becomes an escape.
    pure subroutine new_error(error, status, message)
       type(error_type), allocatable, intent(out) :: error
       integer, intent(in) :: status             !! one of the status_ parameters
@@ -36,7 +37,7 @@ contains
       allocate (error, stat=failed)
       call check_allocation(failed)
       error%status = status
-      error%message = message
+      error%message = displayed(message)
    end subroutine new_error
 
 end module errors

@@ -10,9 +10,9 @@ module memory_limit
 
    public :: memory_limit_type, find_limit, group_limit
 
-   !> Addresses that a thread takes without ever using the memory: the work space of BLAS (OpenBLAS
-   !> waits for ever where it does not get its 128 MiB), and of threads but the first their stack and
-   !> their part of the heap.
+   !> Addresses that a thread takes without ever using the memory: work space of BLAS (OpenBLAS
+   !> waits for ever where it does not get its 128 MiB), and of threads but the first a stack and a
+   !> part of the heap.
    real(wp), parameter :: work_space = 1.4e8_wp, stack_and_heap = 8.0e7_wp
    !> A control group with more than this has no limit, bytes.
    real(wp), parameter :: no_limit = 1.0e17_wp

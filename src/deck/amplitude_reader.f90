@@ -7,7 +7,6 @@ module amplitude_reader
    use properties, only: name_length
    use histories, only: time_step, time_total
    use model, only: model_type
-   use model_building, only: find_named
    use cards, only: deck_type, card_type, count_cards, get_word, get_name_parameter, parameter_place
    use fields, only: fields_type, split_line, check_count, field_place, get_real
    use words, only: word_length, advice
@@ -49,12 +48,13 @@ contains
       associate (amplitude => model%amplitudes(n))
          call get_name_parameter(card, 'NAME', amplitude%name, model%source, error)
          if (allocated(error)) return
-         if (find_named(model%amplitudes(:n - 1), amplitude%name) > 0) then
+         if (model%amplitude_of%find(amplitude%name) > 0) then
             call fail_at(error, model%source, parameter_place(card, 'NAME'), &
                   "amplitude '"//trim(amplitude%name)//"' is defined twice", &
                   cure='give every amplitude its own name')
             return
          end if
+         call model%amplitude_of%insert(amplitude%name, n)
          call get_word(card, 'TIME', times, choice, model%source, error)
          if (allocated(error)) return
          amplitude%time = time_step
@@ -122,7 +122,7 @@ contains
       amplitude = 0
       call get_name_parameter(card, 'AMPLITUDE', name, model%source, error)
       if (allocated(error) .or. name == '') return
-      amplitude = find_named(model%amplitudes, name)
+      amplitude = model%amplitude_of%find(name)
       if (amplitude == 0) call fail_at(error, model%source, parameter_place(card, 'AMPLITUDE'), &
             'no such amplitude: '//trim(name), &
             cure='define it with *AMPLITUDE; '//advice(name, [model%amplitudes%name]))

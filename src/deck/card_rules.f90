@@ -124,6 +124,10 @@ contains
       type(error_type), allocatable, intent(out) :: error
       integer :: i
 
+      do i = 2, size(card%parameters)
+         call check_twin(card, i, source, error)
+         if (allocated(error)) return
+      end do
       if (is_note_card(card%rule)) return
       call check_level(card, source, error)
       if (allocated(error)) return
@@ -160,7 +164,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       character(len=word_length), allocatable :: list(:)
       character(len=:), allocatable :: marks, continued
-      integer :: j, k
+      integer :: k
 
       continued = ''
       list = parameter_names(card%rule)
@@ -173,12 +177,6 @@ contains
                   "' of "//name_of(card%rule), cure=advice(given%name, list)//continued)
             return
          end if
-         do j = 1, i - 1
-            if (card%parameters(j)%name /= given%name) cycle
-            call fail_at(error, source, given%place, given%name//' is given twice on this card', &
-                  cure='keep one of the two')
-            return
-         end do
          marks = parameter_marks(card%rule, k)
          if (index(marks, '~') > 0) then
             call fail_at(error, source, given%place, trim(list(k))// &
@@ -191,6 +189,24 @@ contains
          end if
       end associate
    end subroutine check_parameter
+
+   !> A parameter is given once.
+   pure subroutine check_twin(card, i, source, error)
+      type(card_type), intent(in) :: card
+      integer, intent(in) :: i
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      integer :: j
+
+      associate (given => card%parameters(i))
+         do j = 1, i - 1
+            if (card%parameters(j)%name /= given%name) cycle
+            call fail_at(error, source, given%place, given%name//' is given twice on this card', &
+                  cure='keep one of the two')
+            return
+         end do
+      end associate
+   end subroutine check_twin
 
    pure subroutine require_value(given, source, error)
       type(parameter_type), intent(in) :: given

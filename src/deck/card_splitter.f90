@@ -3,10 +3,11 @@ module card_splitter
    use errors, only: error_type, new_error, status_file, status_deck
    use memory_shortage, only: check_allocation
    use places, only: place_type, source_type, source_file_type, source_line, fail_at
-   use words, only: squeezed, is_blank
-   use cards, only: card_type, deck_type, parameter_type, parameter_index
+   use words, only: is_blank
+   use cards, only: card_type, deck_type, parameter_index
    use card_rules, only: check_keyword
    use source_reader, only: add_file
+   use keyword_lines, only: read_card_line, max_parameters
    implicit none
    private
 
@@ -14,6 +15,8 @@ module card_splitter
 
    integer, parameter :: kind_blank = 1, kind_comment = 2, kind_keyword = 3, kind_data = 4
    integer, parameter :: max_depth = 50
+   integer, parameter :: max_files = 10000
+   integer, parameter :: max_length = 2000000     !! of a line that is no comment
 
    !> What the splitting carries from line to line.
    type :: progress_type
@@ -37,7 +40,7 @@ contains
 
       allocate (deck%cards(64), deck%data(1024), stat=status)
       call check_allocation(status)
-      call add_file(source, path, error)
+      call add_file(source, path, place_type(), error)
       if (allocated(error)) return
       call split_file(deck, source, 1, progress, error)
       if (allocated(error)) return
@@ -50,8 +53,27 @@ contains
       else if (progress%n_steps == 0) then
          call fail_at(error, source, deck%cards(deck%n_cards)%place, &
                'the deck has no step', cure='add *STEP, *DYNAMIC or *STATIC, *END STEP')
+      else
+         call find_ranges(deck, progress%n_steps)
       end if
    end subroutine split_deck
+
+   !> First and last card of every step; those of the model (step 0) stand before and between.
+   pure subroutine find_ranges(deck, n_steps)
+      type(deck_type), intent(inout) :: deck
+      integer, intent(in) :: n_steps
+      integer :: i, s, status
+
+      allocate (deck%first_card(0:n_steps), source=deck%n_cards + 1, stat=status)
+      call check_allocation(status)
+      allocate (deck%last_card(0:n_steps), source=0, stat=status)
+      call check_allocation(status)
+      do i = 1, deck%n_cards
+         s = deck%cards(i)%step
+         deck%first_card(s) = min(i, deck%first_card(s))
+         deck%last_card(s) = i
+      end do
+   end subroutine find_ranges
 
    recursive subroutine split_file(deck, source, file, progress, error)
       type(deck_type), intent(inout) :: deck
@@ -67,13 +89,14 @@ contains
       do while (line <= source%files(file)%n_lines)
          select case (kind_of(source%files(file), line))
          case (kind_keyword)
-            call read_card(deck, source, file, line, error)
+            call check_length(source, file, line, error)
+            if (.not. allocated(error)) call read_card(deck, source, file, line, error)
             if (.not. allocated(error)) call place_card(deck, source, progress, error)
          case (kind_data)
-            call add_data(deck, source, file, line, error)
+            call check_length(source, file, line, error)
+            if (.not. allocated(error)) call add_data(deck, source, file, line, error)
          case default
-            line = line + 1
-            cycle
+            continue
          end select
          if (allocated(error)) return
          line = line + 1
@@ -81,7 +104,24 @@ contains
       progress%depth = progress%depth - 1
    end subroutine split_file
 
-   !> Blank (also commas alone), comment, keyword or data line.
+   pure subroutine check_length(source, file, line, error)
+      type(source_type), intent(in) :: source
+      integer, intent(in) :: file, line
+      type(error_type), allocatable, intent(out) :: error
+      type(place_type) :: place
+
+      associate (from => source%files(file))
+         if (from%last(line) - from%first(line) < max_length) return
+      end associate
+      place%file = file
+      place%line = line
+      place%column = 1
+      place%length = 1
+      call fail_at(error, source, place, 'this line is too long', &
+            cure='a line that is no comment may have 2 000 000 characters')
+   end subroutine check_length
+
+   !> Blank, comment, keyword or data line.
    pure function kind_of(file, line) result(kind)
       type(source_file_type), intent(in) :: file
       integer, intent(in) :: line
@@ -91,7 +131,7 @@ contains
       kind = kind_blank
       last = file%last(line)
       do first = file%first(line), last
-         if (.not. is_blank(file%content(first:first)) .and. file%content(first:first) /= ',') exit
+         if (.not. is_blank(file%content(first:first))) exit
       end do
       if (first > last) return
       kind = kind_data
@@ -163,86 +203,17 @@ contains
          place%line = line
          place%card = card%place%line
          call read_card_line(card, source_line(source, file, line), place, continued)
+         if (size(card%parameters) <= max_parameters) cycle
+         call fail_at(error, source, place, 'this card has too many parameters', &
+               cure='the comma at the end of a line continues the keyword line: remove it')
+         return
       end do
       call append_card(deck, card)
    end subroutine read_card
 
-   !> One line of a keyword card: the keyword (if it is still missing), then parameters.
-   subroutine read_card_line(card, line, place, continued)
-      type(card_type), intent(inout) :: card
-      character(len=*), intent(in) :: line
-      type(place_type), intent(in) :: place
-      logical, intent(out) :: continued
-      integer :: start, finish, first, last
-
-      continued = .false.
-      start = 1
-      do while (start <= len(line))
-         finish = index(line(start:), ',') + start - 2
-         if (finish < start - 1) finish = len(line)
-         continued = finish < len(line)
-         call trim_ends(line, start, finish, first, last)
-         start = finish + 2
-         if (first > last) cycle
-         continued = .false.
-         if (card%keyword == '') then
-            card%keyword = squeezed(line(first + 1:last))
-            card%place%column = first
-            card%place%length = last - first + 1
-         else
-            call add_parameter(card, line(first:last), place, first)
-         end if
-         continued = finish < len(line)
-      end do
-   end subroutine read_card_line
-
-   pure subroutine trim_ends(line, start, finish, first, last)
-      character(len=*), intent(in) :: line
-      integer, intent(in) :: start, finish
-      integer, intent(out) :: first, last
-
-      first = start
-      last = finish
-      do while (first <= last)
-         if (.not. is_blank(line(first:first))) exit
-         first = first + 1
-      end do
-      do while (last >= first)
-         if (.not. is_blank(line(last:last))) exit
-         last = last - 1
-      end do
-   end subroutine trim_ends
-
-   subroutine add_parameter(card, string, place, column)
-      type(card_type), intent(inout) :: card
-      character(len=*), intent(in) :: string
-      type(place_type), intent(in) :: place
-      integer, intent(in) :: column
-      type(parameter_type), allocatable :: longer(:)
-      integer :: i, n, equals, status
-
-      n = size(card%parameters)
-      allocate (longer(n + 1), stat=status)
-      call check_allocation(status)
-      do i = 1, n
-         longer(i) = card%parameters(i)
-      end do
-      equals = index(string, '=')
-      if (equals > 0) then
-         longer(n + 1)%name = squeezed(string(:equals - 1))
-         longer(n + 1)%value = trim(adjustl(string(equals + 1:)))
-      else
-         longer(n + 1)%name = squeezed(string)
-      end if
-      longer(n + 1)%place = place
-      longer(n + 1)%place%column = column
-      longer(n + 1)%place%length = len(string)
-      call move_alloc(longer, card%parameters)
-   end subroutine add_parameter
-
    subroutine append_card(deck, card)
       type(deck_type), intent(inout) :: deck
-      type(card_type), intent(in) :: card
+      type(card_type), intent(inout) :: card     !! empty afterwards
       type(card_type), allocatable :: longer(:)
       integer :: i, status
 
@@ -250,13 +221,27 @@ contains
          allocate (longer(2*deck%n_cards), stat=status)
          call check_allocation(status)
          do i = 1, deck%n_cards
-            longer(i) = deck%cards(i)
+            call move_card(deck%cards(i), longer(i))
          end do
          call move_alloc(longer, deck%cards)
       end if
       deck%n_cards = deck%n_cards + 1
-      deck%cards(deck%n_cards) = card
+      call move_card(card, deck%cards(deck%n_cards))
    end subroutine append_card
+
+   !> A card as the splitting knows it: the items it defines are found later.
+   pure subroutine move_card(from, to)
+      type(card_type), intent(inout) :: from
+      type(card_type), intent(inout) :: to
+
+      call move_alloc(from%keyword, to%keyword)
+      call move_alloc(from%parameters, to%parameters)
+      to%first = from%first
+      to%last = from%last
+      to%step = from%step
+      to%rule = from%rule
+      to%place = from%place
+   end subroutine move_card
 
    !> Gives the newest card its step; opens and closes steps; follows includes.
    recursive subroutine place_card(deck, source, progress, error)
@@ -322,8 +307,13 @@ contains
          call fail_at(error, source, card%parameters(1)%place, trouble, &
                cure='a file must not include itself, directly or through others')
          return
+      else if (source%n_files >= max_files) then
+         call fail_at(error, source, card%parameters(1)%place, &
+               'this deck reads more than 10000 files', &
+               cure='a file that is included twice in each of many files is read very often')
+         return
       end if
-      call add_file(source, path, error)
+      call add_file(source, path, card%parameters(1)%place, error)
       if (allocated(error)) then
          trouble = error%message(:index(error%message//new_line('a'), new_line('a')) - 1)
          if (error%status == status_file) call fail_at(error, source, card%parameters(1)%place, &

@@ -4,6 +4,8 @@ module cards
    use errors, only: error_type
    use places, only: place_type, source_type, fail_at
    use properties, only: name_length
+   use name_map, only: name_map_type
+   use display, only: displayed
    use words, only: squeezed, find_word, advice
    use numbers, only: parse_integer, parse_fraction
    implicit none
@@ -46,9 +48,11 @@ module cards
    type :: deck_type
       type(card_type), allocatable :: cards(:)
       integer :: n_cards = 0
+      integer, allocatable :: first_card(:), last_card(:)   !! (0:n_steps) where those of a step are
       type(place_type), allocatable :: data(:)   !! the lines that hold data, in order
       integer :: n_data = 0
       type(symbol_type), allocatable :: symbols(:)
+      type(name_map_type) :: symbol_of           !! name to index of the symbol
    end type deck_type
 
 contains
@@ -189,7 +193,7 @@ contains
       value = squeezed(card%parameters(i)%value)
    end subroutine get_name_parameter
 
-   !> A name has 1 to 80 characters and does not read as an integer.
+   !> A name has 1 to 80 characters that can be seen, no "=", and does not read as an integer.
    pure subroutine check_name(name, place, source, error)
       character(len=*), intent(in) :: name
       type(place_type), intent(in) :: place
@@ -198,10 +202,17 @@ contains
 
       if (len(name) > name_length) then
          call fail_at(error, source, place, 'this name is too long', &
-               cure='names have up to 80 characters')
+               cure='names have up to 80 characters (bytes of UTF-8)')
       else if (verify(name, '+-0123456789') == 0) then
          call fail_at(error, source, place, "'"//name//"' is no name", &
                cure='a name must not be a number')
+      else if (index(name, '=') > 0) then
+         call fail_at(error, source, place, "'"//name//"' is no name", &
+               cure="a name holds no '=': is a comma missing before a parameter?")
+      else if (displayed(name) /= name) then
+         call fail_at(error, source, place, &
+               "'"//name//"' is no name: it holds what cannot be seen", &
+               cure='names are ASCII or UTF-8, without control characters and special blanks')
       end if
    end subroutine check_name
 

@@ -36,7 +36,7 @@ contains
       integer :: i, n
 
       n = 0
-      do i = 1, deck%n_cards
+      do i = deck%first_card(step), deck%last_card(step)
          if (deck%cards(i)%keyword /= 'BOUNDARY' .or. deck%cards(i)%step /= step) cycle
          if (step == 0 .and. has_parameter(deck%cards(i), 'OP')) then
             call fail_at(error, model%source, parameter_place(deck%cards(i), 'OP'), &
@@ -157,7 +157,7 @@ contains
 
       n_d = 0
       n_v = 0
-      do i = 1, deck%n_cards
+      do i = deck%first_card(step), deck%last_card(step)
          if (deck%cards(i)%keyword /= 'INITIALCONDITIONS' .or. deck%cards(i)%step /= step) cycle
          call get_word(deck%cards(i), 'TYPE', ic_types, choice, model%source, error)
          if (allocated(error)) return
@@ -246,7 +246,7 @@ contains
       integer :: i, j, n, line, amplitude
 
       n = 0
-      do i = 1, deck%n_cards
+      do i = deck%first_card(step), deck%last_card(step)
          if (deck%cards(i)%keyword /= 'CLOAD' .or. deck%cards(i)%step /= step) cycle
          call find_amplitude(model, deck%cards(i), amplitude, error)
          if (allocated(error)) return

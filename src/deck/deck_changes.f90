@@ -256,9 +256,6 @@ contains
       if (new%deck%cards(i)%keyword == 'STATIC') then
          call fail_at(error, new%source, place, 'T has changed, and the loads of a static step ' &
                //'grow over its whole length', cure=cure)
-      else if (.not. has_parameter(new%deck%cards(i), 'DIRECT')) then
-         call fail_at(error, new%source, place, 'T has changed, and the increments of a step with ' &
-               //'TOLERANCE are planned over its whole length', cure=cure)
       end if
    end subroutine check_end
 

@@ -1,6 +1,8 @@
 !> A deck file to a model: cuts it into cards, then lets one reader a family fill its part.
 module deck_reader
+   use display, only: displayed
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use memory_shortage, only: check_allocation
    use places, only: fail_at, note_at, source_line
    use model, only: model_type
@@ -66,7 +68,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       integer :: i
 
-      model%heading = ''
+      call keep_heading(model, deck)
       do i = 1, deck%n_cards
          call check_card(deck%cards(i), deck%data, model%source, error)
          if (allocated(error)) return
@@ -77,7 +79,6 @@ contains
             call add_note(model%notes, note_at(model%source, deck%cards(i)%place, &
                   name_of(deck%cards(i)%rule)//' has no effect here'))
          end if
-         if (deck%cards(i)%keyword == 'HEADING') call add_heading(model, deck, i)
       end do
       call mark_used_symbols(deck, model%source)
       do i = 1, size(deck%symbols)
@@ -104,18 +105,43 @@ contains
             'COMPRESS: the highest level is 9', cure='1 is fast, 9 is small; write 1 to 9')
    end subroutine read_compression
 
-   subroutine add_heading(model, deck, i)
+   !> The lines of all *HEADING cards, as they may be shown.
+   subroutine keep_heading(model, deck)
       type(model_type), intent(inout) :: model
       type(deck_type), intent(in) :: deck
-      integer, intent(in) :: i
-      integer :: j
+      character(len=:), allocatable :: text
+      integer :: pass, i, j, n, status
 
-      do j = deck%cards(i)%first, deck%cards(i)%last
-         if (len(model%heading) > 0) model%heading = model%heading//new_line('a')
-         model%heading = model%heading// &
-               trim(source_line(model%source, deck%data(j)%file, deck%data(j)%line))
+      do pass = 1, 2                             ! counts, then copies
+         n = 0
+         do i = 1, deck%n_cards
+            if (deck%cards(i)%keyword /= 'HEADING') cycle
+            do j = deck%cards(i)%first, deck%cards(i)%last
+               call put_line(n, source_line(model%source, deck%data(j)%file, deck%data(j)%line))
+            end do
+         end do
+         if (pass == 1) then
+            allocate (character(len=n) :: text, stat=status)
+            call check_allocation(status)
+         end if
       end do
-   end subroutine add_heading
+      model%heading = displayed(text)
+
+   contains
+
+      subroutine put_line(n, line)
+         integer, intent(inout) :: n   !! characters so far
+         character(len=*), intent(in) :: line
+
+         if (n > 0) then
+            n = n + 1
+            if (allocated(text)) text(n:n) = new_line('a')
+         end if
+         if (allocated(text)) text(n + 1:n + len_trim(line)) = line
+         n = n + len_trim(line)
+      end subroutine put_line
+
+   end subroutine keep_heading
 
    !> Nodes, elements, sets.
    subroutine read_mesh(model, deck, error)

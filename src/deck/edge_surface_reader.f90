@@ -7,7 +7,7 @@ module edge_surface_reader
    use element_sides, only: side_finder_type, new_side_finder, is_built, find_sides
    use element_sides, only: count_sides, side_nodes, side_key, key_element, key_side
    use model, only: model_type
-   use model_building, only: find_named, append, fit, sort_unique
+   use model_building, only: append, fit, sort_unique
    use cards, only: deck_type, card_type
    use fields, only: fields_type, split_line, check_count, field_place, field_text
    use fields, only: is_given, is_integer, get_integer, get_name
@@ -123,8 +123,7 @@ contains
       end if
       call get_name(fields, 1, 'element id or set', name, model%source, error)
       if (allocated(error)) return
-      if (find_named(model%element_sets, name) == 0 .and. &
-            find_named(model%node_sets, name) > 0) then
+      if (model%element_set_of%find(name) == 0 .and. model%node_set_of%find(name) > 0) then
          call fail_at(error, model%source, field_place(fields, 1), &
                trim(name)//' is a set of nodes', &
                cure='name a set of elements, or write TYPE=NODE on the *SURFACE card')

@@ -7,7 +7,7 @@ module fields
    use words, only: squeezed, is_blank
    use numbers, only: parse_integer, parse_real
    use cards, only: deck_type, card_type, check_name
-   use symbols, only: substitute
+   use symbols, only: substitute, add_text
    use card_rules, only: usage_of
    use text, only: to_text
    use memory_shortage, only: check_allocation
@@ -112,18 +112,19 @@ contains
       type(source_type), intent(in) :: source
       type(error_type), allocatable, intent(out) :: error
       character(len=:), allocatable :: new_text, piece
-      integer :: i
+      integer :: i, length
 
       new_text = ''
+      length = 0
       do i = 1, fields%n
          call substitute(deck, fields%text(fields%first(i):fields%last(i)), &
                field_place(fields, i), piece, source, error)
          if (allocated(error)) return
-         fields%first(i) = len(new_text) + 1
-         new_text = new_text//piece
-         fields%last(i) = len(new_text)
+         fields%first(i) = length + 1
+         call add_text(new_text, length, piece)
+         fields%last(i) = length
       end do
-      call move_alloc(new_text, fields%text)
+      fields%text = new_text(:length)
    end subroutine substitute_fields
 
    !> Place of field i, which may be missing.

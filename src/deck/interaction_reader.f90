@@ -8,7 +8,6 @@ module interaction_reader
    use surfaces, only: method_penalty, method_lagrange, beta_given
    use properties, only: section_gap
    use model, only: model_type
-   use model_building, only: find_named
    use cards, only: deck_type, card_type, count_cards, get_word, get_real_parameter
    use cards, only: get_name_parameter, get_integer_parameter, parameter_place, has_parameter
    use cards, only: parameter_index
@@ -85,7 +84,10 @@ contains
       call get_name_parameter(card, 'NAME', model%interactions(n)%name, model%source, error)
       if (allocated(error)) return
       model%interactions(n)%place = card%place
-      if (find_named(model%interactions(:n - 1), model%interactions(n)%name) == 0) return
+      if (model%interaction_of%find(model%interactions(n)%name) == 0) then
+         call model%interaction_of%insert(model%interactions(n)%name, n)
+         return
+      end if
       call fail_at(error, model%source, parameter_place(card, 'NAME'), "surface interaction '"// &
             trim(model%interactions(n)%name)//"' is defined twice", &
             cure='give every interaction its own name')

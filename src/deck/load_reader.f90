@@ -55,7 +55,7 @@ contains
       call reserve_sets(model%element_sets, n)
       n = 0
       n_gravity = 0
-      do i = 1, deck%n_cards
+      do i = deck%first_card(step), deck%last_card(step)
          if (deck%cards(i)%keyword /= 'DLOAD' .or. deck%cards(i)%step /= step) cycle
          call find_amplitude(model, deck%cards(i), amplitude, error)
          if (allocated(error)) return
@@ -280,7 +280,7 @@ contains
       integer :: i
 
       n = 0
-      do i = 1, deck%n_cards
+      do i = deck%first_card(step), deck%last_card(step)
          if (deck%cards(i)%keyword == keyword .and. deck%cards(i)%step == step) then
             n = n + deck%cards(i)%last - deck%cards(i)%first + 1
          end if
@@ -322,13 +322,13 @@ contains
       integer :: i, n, status
 
       n = 0
-      do i = 1, deck%n_cards
+      do i = deck%first_card(step), deck%last_card(step)
          if (deck%cards(i)%keyword == 'BASEMOTION' .and. deck%cards(i)%step == step) n = n + 1
       end do
       allocate (list(n), stat=status)
       call check_allocation(status)
       n = 0
-      do i = 1, deck%n_cards
+      do i = deck%first_card(step), deck%last_card(step)
          if (deck%cards(i)%keyword /= 'BASEMOTION' .or. deck%cards(i)%step /= step) cycle
          n = n + 1
          call read_base_motion(list(n), model, deck, deck%cards(i), error)

@@ -6,7 +6,6 @@ module material_reader
    use places, only: source_type, fail_at
    use properties, only: material_type, table_type
    use model, only: model_type
-   use model_building, only: find_named
    use cards, only: deck_type, card_type, count_cards, get_word, get_real_parameter
    use cards, only: get_name_parameter, parameter_place
    use words, only: word_length
@@ -68,7 +67,10 @@ contains
       call get_name_parameter(card, 'NAME', model%materials(n)%name, model%source, error)
       if (allocated(error)) return
       model%materials(n)%place = card%place
-      if (find_named(model%materials(:n - 1), model%materials(n)%name) == 0) return
+      if (model%material_of%find(model%materials(n)%name) == 0) then
+         call model%material_of%insert(model%materials(n)%name, n)
+         return
+      end if
       call fail_at(error, model%source, parameter_place(card, 'NAME'), &
             "material '"//trim(model%materials(n)%name)//"' is defined twice", &
             cure='give every material its own name')

@@ -1,6 +1,7 @@
 !> Numbers as a deck writes them: Fortran and C spelling, nothing that is not finite.
 module numbers
    use, intrinsic :: iso_c_binding, only: c_char, c_double, c_null_char, c_null_ptr, c_ptr
+   use display, only: foreign_character
    use kinds, only: wp, int64
    implicit none
    private
@@ -13,6 +14,7 @@ module numbers
          1.0e13_wp, 1.0e14_wp, 1.0e15_wp, 1.0e16_wp, 1.0e17_wp, 1.0e18_wp, 1.0e19_wp, 1.0e20_wp, &
          1.0e21_wp, 1.0e22_wp]
 
+   character(len=*), parameter :: blanks = ' '//achar(9)
    character(len=*), parameter :: too_small = "' is too small: nothing but 0 is below 4.95e-324"
 
    interface
@@ -40,7 +42,7 @@ contains
       start = 1
       if (is_sign(string, 1)) start = 2
       if (start > len(string) .or. verify(string(start:), '0123456789') > 0) then
-         cause = "'"//string//"' is not an integer"
+         cause = "'"//string//"' is not an integer"//foreign_character(string)
          return
       end if
       number = 0
@@ -68,7 +70,7 @@ contains
       call scan_real(string, mantissa, n_digits, exponent, valid)
       value = 0.0_wp
       if (.not. valid) then
-         cause = "'"//string//"' is not a number"
+         cause = "'"//string//"' is not a number"//foreign_character(string)
       else if (mantissa == 0) then
          value = 0.0_wp
       else if (n_digits + exponent > 309) then
@@ -99,18 +101,20 @@ contains
          call parse_real(string, value, cause)
          return
       end if
-      call parse_real(trim(string(:slash - 1)), value, cause)
+      call parse_real(string(:verify(string(:slash - 1), blanks, back=.true.)), value, cause)
       if (allocated(cause)) return
-      call parse_real(trim(adjustl(string(slash + 1:))), divisor, cause)
+      call parse_real(string(slash + verify(string(slash + 1:)//'.', blanks):), divisor, cause)
       if (allocated(cause)) return
       if (abs(divisor) <= 0.0_wp) then
          cause = "'"//string//"' divides by zero"
          return
       end if
-      if (abs(divisor) >= 1.0_wp .or. abs(value) < abs(divisor)*huge(value)) then
-         value = value/divisor
-      else
+      if (abs(divisor) < 1.0_wp .and. abs(value) >= abs(divisor)*huge(value)) then
          cause = "the number '"//string//"' is too large"
+      else if (abs(value) > 0.0_wp .and. .not. abs(value/divisor) > 0.0_wp) then
+         cause = "the number '"//string//too_small
+      else
+         value = value/divisor
       end if
    end subroutine parse_fraction
 

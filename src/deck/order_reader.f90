@@ -63,7 +63,7 @@ contains
       if (step%procedure /= procedure_dynamic) return
       do i = 1, s - 1
          if (model%steps(i)%procedure /= procedure_dynamic) cycle
-         if (model%steps(i)%order == step%order) cycle
+         if (model%steps(i)%order == step%order) return     ! as all before it
          call fail_at(error, model%source, step%order_place, &
                'dynamic steps of different ORDER', &
                cure='write the same ORDER on all *DYNAMIC cards')

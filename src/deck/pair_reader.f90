@@ -3,13 +3,14 @@ module pair_reader
    use kinds, only: wp
    use errors, only: error_type
    use memory_shortage, only: check_allocation
-   use places, only: fail_at, line_text
+   use places, only: source_type, fail_at, line_text
    use properties, only: name_length
    use surfaces, only: contact_pair_type
    use model, only: model_type
-   use model_building, only: find_named
+   use name_map, only: name_map_type
+   use text, only: to_text
    use cards, only: deck_type, card_type, get_word, get_name_parameter, get_real_parameter
-   use cards, only: has_parameter, parameter_index, parameter_place
+   use cards, only: has_parameter, parameter_index, parameter_place, get_integer_parameter
    use fields, only: fields_type, split_line, check_count, field_place, get_name
    use words, only: word_length, advice
    implicit none
@@ -24,6 +25,7 @@ contains
       type(model_type), intent(inout) :: model
       type(deck_type), intent(in) :: deck
       type(error_type), allocatable, intent(out) :: error
+      type(name_map_type) :: pair_of
       integer :: i, n, status
 
       n = 0
@@ -37,15 +39,16 @@ contains
       n = 0
       do i = 1, deck%n_cards
          if (deck%cards(i)%keyword /= 'CONTACTPAIR') cycle
-         call read_pair_card(model, n, deck, deck%cards(i), error)
+         call read_pair_card(model, n, pair_of, deck, deck%cards(i), error)
          if (allocated(error)) return
       end do
       call check_masses(model, error)
    end subroutine read_pairs
 
-   subroutine read_pair_card(model, n, deck, card, error)
+   subroutine read_pair_card(model, n, pair_of, deck, card, error)
       type(model_type), intent(inout) :: model
       integer, intent(inout) :: n   !! pairs so far
+      type(name_map_type), intent(inout) :: pair_of
       type(deck_type), intent(in) :: deck
       type(card_type), intent(in) :: card
       type(error_type), allocatable, intent(out) :: error
@@ -65,7 +68,7 @@ contains
          if (allocated(error)) return
          call check_pair(pair, model, fields, error)
          if (allocated(error)) return
-         call check_pair_is_new(pair, model, n, fields, error)
+         call check_pair_is_new(pair, model, n + 1, pair_of, fields, error)
          if (allocated(error)) return
          n = n + 1
          model%pairs(n) = pair
@@ -80,7 +83,6 @@ contains
       type(error_type), allocatable, intent(out) :: error
       character(len=word_length), parameter :: types(*) = [character(len=word_length) :: &
             'NODE TO SURFACE', 'SURFACE TO SURFACE']
-      character(len=word_length), parameter :: passes(*) = [character(len=word_length) :: '1', '2']
       character(len=word_length), parameter :: masses(*) = [character(len=word_length) :: &
             'REDISTRIBUTED']
       character(len=name_length) :: name
@@ -89,9 +91,8 @@ contains
       call get_word(card, 'TYPE', types, choice, model%source, error)
       if (allocated(error)) return
       pair%weighted = choice == 2
-      call get_word(card, 'PASSES', passes, choice, model%source, error)
+      call read_passes(pair, model%source, card, error)
       if (allocated(error)) return
-      pair%passes = max(1, choice)
       call get_word(card, 'MASS', masses, choice, model%source, error)
       if (allocated(error)) return
       pair%redistributed = choice == 1
@@ -100,11 +101,25 @@ contains
       if (allocated(error)) return
       call get_name_parameter(card, 'INTERACTION', name, model%source, error)
       if (allocated(error)) return
-      pair%interaction = find_named(model%interactions, name)
+      pair%interaction = model%interaction_of%find(name)
       if (pair%interaction == 0) call fail_at(error, model%source, &
             parameter_place(card, 'INTERACTION'), 'no such surface interaction: '//trim(name), &
             cure='define it with *SURFACE INTERACTION; '//advice(name, [model%interactions%name]))
    end subroutine read_options
+
+   !> PASSES: 1 or 2.
+   subroutine read_passes(pair, source, card, error)
+      type(contact_pair_type), intent(inout) :: pair
+      type(source_type), intent(in) :: source
+      type(card_type), intent(in) :: card
+      type(error_type), allocatable, intent(out) :: error
+
+      pair%passes = 1
+      call get_integer_parameter(card, 'PASSES', 1, pair%passes, source, error)
+      if (allocated(error)) return
+      if (pair%passes > 2) call fail_at(error, source, parameter_place(card, 'PASSES'), &
+            'PASSES is out of range', cure='write 1 or 2')
+   end subroutine read_passes
 
    !> ADJUST, or ADJUST=distance.
    subroutine read_adjustment(pair, model, card, error)
@@ -136,9 +151,9 @@ contains
       if (allocated(error)) return
       call get_name(fields, 1, 'slave surface', name, model%source, error)
       if (allocated(error)) return
-      pair%contactor = find_named(model%surfaces, name)
+      pair%contactor = model%surface_of%find(name)
       if (pair%contactor > 0) return
-      if (find_named(model%rigid_surfaces, name) > 0) then
+      if (model%rigid_surface_of%find(name) > 0) then
          call fail_at(error, model%source, field_place(fields, 1), &
                'a rigid surface cannot be the slave', cure='write: slave, rigid surface')
       else
@@ -156,8 +171,8 @@ contains
 
       call get_name(fields, 2, 'master surface', name, model%source, error)
       if (allocated(error)) return
-      pair%target = find_named(model%surfaces, name)
-      pair%rigid_target = find_named(model%rigid_surfaces, name)
+      pair%target = model%surface_of%find(name)
+      pair%rigid_target = model%rigid_surface_of%find(name)
       if (pair%target + pair%rigid_target == 0) then
          call fail_at(error, model%source, field_place(fields, 2), 'no such surface: '// &
                trim(name), cure='define it with *SURFACE, TYPE=ELEMENT or with *RIGID SURFACE; '// &
@@ -239,29 +254,40 @@ contains
    end subroutine check_edges
 
    !> Two surfaces make one pair.
-   subroutine check_pair_is_new(pair, model, n, fields, error)
+   subroutine check_pair_is_new(pair, model, n, pair_of, fields, error)
       type(contact_pair_type), intent(in) :: pair
       type(model_type), intent(in) :: model
-      integer, intent(in) :: n   !! pairs so far
+      integer, intent(in) :: n   !! its index
+      type(name_map_type), intent(inout) :: pair_of   !! "slave target rigid target" to index
       type(fields_type), intent(in) :: fields
       type(error_type), allocatable, intent(out) :: error
-      integer :: i
+      integer :: twin
 
-      do i = 1, n
-         associate (other => model%pairs(i))
-            if (other%contactor == pair%contactor .and. other%target == pair%target .and. &
-                  other%rigid_target == pair%rigid_target) then
-               call fail_at(error, model%source, fields%place, 'this pair stands at '// &
-                     line_text(model%source, other%place)//' already', cure='keep one of the two')
-               return
-            else if (other%contactor == pair%target .and. other%target == pair%contactor) then
-               call fail_at(error, model%source, fields%place, 'this is the pair at '// &
-                     line_text(model%source, other%place)//' with its surfaces exchanged', &
-                     cure='keep one of the two, and write PASSES=2 on its card for both ways')
-               return
-            end if
-         end associate
-      end do
+      twin = pair_of%find(key(pair%contactor, pair%target, pair%rigid_target))
+      if (twin > 0) then
+         call fail_at(error, model%source, fields%place, 'this pair stands at '// &
+               line_text(model%source, model%pairs(twin)%place)//' already', &
+               cure='keep one of the two')
+         return
+      end if
+      if (pair%target > 0) twin = pair_of%find(key(pair%target, pair%contactor, 0))
+      if (twin > 0) then
+         call fail_at(error, model%source, fields%place, 'this is the pair at '// &
+               line_text(model%source, model%pairs(twin)%place)//' with its surfaces exchanged', &
+               cure='keep one of the two, and write PASSES=2 on its card for both ways')
+         return
+      end if
+      call pair_of%insert(key(pair%contactor, pair%target, pair%rigid_target), n)
+
+   contains
+
+      pure function key(contactor, target, rigid_target) result(name)
+         integer, intent(in) :: contactor, target, rigid_target
+         character(len=:), allocatable :: name
+
+         name = to_text(contactor)//' '//to_text(target)//' '//to_text(rigid_target)
+      end function key
+
    end subroutine check_pair_is_new
 
    !> A node without mass has no rebound, in whatever pair it is the slave.

@@ -54,13 +54,13 @@ contains
       before = step_before(model, step)
       if (before > 0) n_old = size(model%steps(before)%requests)
       n = 0
-      do i = 1, deck%n_cards
+      do i = deck%first_card(step), deck%last_card(step)
          if (deck%cards(i)%step == step .and. kind_of(deck%cards(i)%keyword) > 0) n = n + 1
       end do
       allocate (requests(n + n_old), stat=status)
       call check_allocation(status)
       n = 0
-      do i = 1, deck%n_cards
+      do i = deck%first_card(step), deck%last_card(step)
          if (deck%cards(i)%step /= step .or. kind_of(deck%cards(i)%keyword) == 0) cycle
          call read_request(request, model, deck, deck%cards(i), error)
          if (allocated(error)) return

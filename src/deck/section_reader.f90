@@ -9,7 +9,6 @@ module section_reader
    use mesh, only: element_dashpot1, element_dashpot2, element_dashpota, element_truss, element_gap
    use mesh, only: element_line
    use model, only: model_type
-   use model_building, only: find_named
    use cards, only: deck_type, card_type, get_name_parameter, parameter_place
    use fields, only: fields_type, only_line, field_place, get_reals
    use spring_reader, only: read_spring
@@ -207,7 +206,7 @@ contains
 
       call get_name_parameter(card, 'INTERACTION', name, model%source, error)
       if (allocated(error)) return
-      section%interaction = find_named(model%interactions, name)
+      section%interaction = model%interaction_of%find(name)
       if (section%interaction == 0) then
          call fail_at(error, model%source, parameter_place(card, 'INTERACTION'), &
                'no such surface interaction: '//trim(name), &

@@ -6,7 +6,9 @@ module set_reader
    use integer_map, only: integer_map_type
    use mesh, only: set_type
    use model, only: model_type
-   use model_building, only: find_named, append, sort_unique
+   use model_building, only: append
+   use set_drafts, only: draft_type, drafts_type, resolve_sets
+   use name_map, only: name_map_type
    use cards, only: deck_type, card_type, get_name_parameter, has_parameter
    use fields, only: fields_type, split_line, check_count, field_place, is_given, is_integer
    use fields, only: get_integer, get_name
@@ -21,24 +23,6 @@ module set_reader
 
    integer, parameter :: most_plain = 32   !! ids on a line that are read the quick way
 
-   !> A set while it is read: members so far, and the sets it takes in.
-   type :: draft_type
-      integer, allocatable :: members(:)
-      integer :: n_members = 0
-      integer, allocatable :: parts(:)           !! indices of the sets it names
-      integer :: n_parts = 0
-      type(place_type), allocatable :: part_places(:)
-      integer :: state = 0                       !! 0 open, 1 being resolved, 2 done
-   end type draft_type
-
-   !> All sets of one sort (nodes or elements) while they are read.
-   type :: drafts_type
-      character(len=8) :: what = ''              !! "node" or "element", for messages
-      type(set_type), allocatable :: sets(:)
-      type(draft_type), allocatable :: drafts(:)
-      integer :: n = 0
-   end type drafts_type
-
 contains
 
    !> Reads all sets; they may name each other in any order.
@@ -48,16 +32,18 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       call read_family(model%node_sets, 'node', ['NSET', 'NODE'], 'NSET', &
-            model%nodes%index_of, deck, model%source, error)
+            model%node_set_of, model%nodes%index_of, deck, model%source, error)
       if (allocated(error)) return
       call read_family(model%element_sets, 'element', ['ELSET  ', 'ELEMENT'], 'ELSET', &
-            model%elements%index_of, deck, model%source, error)
+            model%element_set_of, model%elements%index_of, deck, model%source, error)
    end subroutine read_sets
 
    !> The sets of nodes or of elements, from their own cards and those that define members.
-   subroutine read_family(sets, what, keywords, parameter_name, index_of, deck, source, error)
+   subroutine read_family(sets, what, keywords, parameter_name, set_of, index_of, deck, source, &
+         error)
       type(set_type), allocatable, intent(out) :: sets(:)
       character(len=*), intent(in) :: what, keywords(2), parameter_name
+      type(name_map_type), intent(out) :: set_of
       type(integer_map_type), intent(in) :: index_of
       type(deck_type), intent(in) :: deck
       type(source_type), intent(in) :: source
@@ -76,10 +62,9 @@ contains
          call read_members(family, set, deck%cards(i), index_of, deck, source, error)
          if (allocated(error)) return
       end do
-      do i = 1, family%n
-         call resolve(family, i, source, error)
-         if (allocated(error)) return
-      end do
+      call resolve_sets(family, source, error)
+      if (allocated(error)) return
+      set_of = family%set_of
       allocate (sets(family%n), stat=status)
       call check_allocation(status)
       do i = 1, family%n
@@ -126,10 +111,11 @@ contains
       set = 0
       call get_name_parameter(card, parameter_name, name, source, error)
       if (allocated(error)) return
-      set = find_named(family%sets(:family%n), name)
+      set = family%set_of%find(name)
       if (set > 0) return
       family%n = family%n + 1
       set = family%n
+      call family%set_of%insert(name, set)
       family%sets(set)%name = name
       family%sets(set)%place = card%place
       allocate (family%drafts(set)%members(8), family%drafts(set)%parts(0), stat=status)
@@ -247,11 +233,11 @@ contains
       type(source_type), intent(in) :: source
       type(error_type), allocatable, intent(out) :: error
       character(len=name_length) :: name
-      integer :: part
+      integer :: part, n
 
       call get_name(fields, k, trim(family%what)//' id or set', name, source, error)
       if (allocated(error)) return
-      part = find_named(family%sets(:family%n), name)
+      part = family%set_of%find(name)
       if (part == 0) then
          call fail_at(error, source, field_place(fields, k), &
                'no such '//trim(family%what)//' set: '//trim(name), &
@@ -259,9 +245,9 @@ contains
          return
       end if
       associate (draft => family%drafts(set))
-         draft%parts = [draft%parts, part]
-         draft%part_places = [draft%part_places, field_place(fields, k)]
-         draft%n_parts = draft%n_parts + 1
+         n = draft%n_parts
+         call append(draft%part_places, n, field_place(fields, k))
+         call append(draft%parts, draft%n_parts, part)
       end associate
    end subroutine add_part
 
@@ -302,35 +288,6 @@ contains
       end do
    end subroutine add_range
 
-   !> Takes in the sets that a set names, then sorts its members.
-   recursive subroutine resolve(family, set, source, error)
-      type(drafts_type), intent(inout) :: family
-      integer, intent(in) :: set
-      type(source_type), intent(in) :: source
-      type(error_type), allocatable, intent(out) :: error
-      integer :: k, part
-      integer, allocatable :: members(:)
-
-      if (family%drafts(set)%state == 2) return
-      family%drafts(set)%state = 1
-      members = family%drafts(set)%members(:family%drafts(set)%n_members)
-      do k = 1, family%drafts(set)%n_parts
-         part = family%drafts(set)%parts(k)
-         if (family%drafts(part)%state == 1) then
-            call fail_at(error, source, family%drafts(set)%part_places(k), &
-                  'set loop: '//trim(family%sets(part)%name)//' contains itself', &
-                  cure='a set must not contain itself, directly or through others')
-            return
-         end if
-         call resolve(family, part, source, error)
-         if (allocated(error)) return
-         members = [members, family%sets(part)%members]
-      end do
-      call sort_unique(members)
-      call move_alloc(members, family%sets(set)%members)
-      family%drafts(set)%state = 2
-   end subroutine resolve
-
    !> The nodes that a field names: one by its id, or those of a set.
    subroutine find_nodes(model, fields, k, nodes, error)
       type(model_type), intent(in) :: model
@@ -364,7 +321,7 @@ contains
       integer, intent(out) :: set
       type(error_type), allocatable, intent(out) :: error
 
-      set = find_named(model%node_sets, name)
+      set = model%node_set_of%find(name)
       if (set == 0) call fail_at(error, model%source, place, 'no such node set: '//trim(name), &
             cure='define it with *NSET; '//advice(name, [model%node_sets%name]))
    end subroutine find_node_set
@@ -377,7 +334,7 @@ contains
       integer, intent(out) :: set
       type(error_type), allocatable, intent(out) :: error
 
-      set = find_named(model%element_sets, name)
+      set = model%element_set_of%find(name)
       if (set == 0) call fail_at(error, model%source, place, 'no such element set: '//trim(name), &
             cure='define it with *ELSET; '//advice(name, pack(model%element_sets%name, &
             model%element_sets%name(1:8) /= 'element ')))      ! not those of *DLOAD on an element

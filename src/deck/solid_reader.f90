@@ -7,11 +7,10 @@ module solid_reader
    use mesh, only: element_truss, is_solid_kind, solid_plane, solid_topology, solid_reduced
    use mesh, only: plane_strain, plane_stress, axisymmetric, quad4
    use model, only: model_type
-   use model_building, only: find_named
    use source_reader, only: add_note
    use cards, only: deck_type, card_type, count_cards, get_word, get_name_parameter
    use cards, only: get_real_parameter, parameter_place
-   use fields, only: fields_type, only_line, field_place, get_reals
+   use fields, only: fields_type, only_line, field_place, get_reals, is_given
    use element_types, only: kind_name
    use words, only: word_length, advice
    use text, only: to_text
@@ -103,7 +102,7 @@ contains
 
       call get_name_parameter(card, 'MATERIAL', name, model%source, error)
       if (allocated(error)) return
-      section%material = find_named(model%materials, name)
+      section%material = model%material_of%find(name)
       if (section%material == 0) then
          call fail_at(error, model%source, parameter_place(card, 'MATERIAL'), &
                'no such material: '//trim(name), &
@@ -191,16 +190,21 @@ contains
       end if
       call only_line(fields, deck, card, 1, model%source, error)
       if (allocated(error)) return
-      if (any(solid_plane(kinds) == axisymmetric)) then
-         call add_note(model%notes, note_at(model%source, fields%place, 'the thickness of '// &
-               'axisymmetric elements has no effect: forces are those of the whole ring'))
-         return
-      end if
+      if (what == 'thickness' .and. .not. is_given(fields, 1)) return
       call get_reals(fields, 1, 1, what, values, model%source, error)
       if (allocated(error)) return
-      section%area = values(1)
-      if (section%area <= 0.0_wp) call fail_at(error, model%source, field_place(fields, 1), &
-            'the '//what//' must be positive', cure='write a number above 0')
+      if (all(solid_plane(kinds) == axisymmetric)) then
+         call add_note(model%notes, note_at(model%source, fields%place, 'the thickness of '// &
+               'axisymmetric elements has no effect: forces are those of the whole ring'))
+      else if (any(solid_plane(kinds) == axisymmetric)) then
+         call fail_at(error, model%source, field_place(fields, 1), 'a thickness of a set that '// &
+               'mixes plane and axisymmetric elements', cure='give each type a set of its own')
+      else if (values(1) <= 0.0_wp) then
+         call fail_at(error, model%source, field_place(fields, 1), &
+               'the '//what//' must be positive', cure='write a number above 0')
+      else
+         section%area = values(1)
+      end if
    end subroutine read_thickness
 
    !> Plane elements lie in a plane of one z, axisymmetric ones at radii x >= 0.

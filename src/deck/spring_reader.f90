@@ -38,7 +38,10 @@ contains
          return
       end if
       line = card%first
-      if (.not. any(axial)) then
+      if (any(axial)) then
+         call skip_empty(line, deck, card, source, error)
+         if (allocated(error)) return
+      else
          call read_directions(section, deck, card, kinds, source, error)
          if (allocated(error)) return
          line = line + 1
@@ -50,6 +53,21 @@ contains
          call read_coefficient(section, deck, card, line, source, error)
       end if
    end subroutine read_spring
+
+   !> A line of nothing but a comma may stand where other elements have their freedoms.
+   subroutine skip_empty(line, deck, card, source, error)
+      integer, intent(inout) :: line
+      type(deck_type), intent(in) :: deck
+      type(card_type), intent(in) :: card
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      type(fields_type) :: fields
+      integer :: k
+
+      call split_line(fields, deck, card, line, source, error)
+      if (allocated(error)) return
+      if (.not. any([(is_given(fields, k), k=1, fields%n)])) line = line + 1
+   end subroutine skip_empty
 
    !> The line with one or two freedoms; the second defaults to the first.
    subroutine read_directions(section, deck, card, kinds, source, error)

@@ -30,8 +30,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       integer :: s, n, status
 
-      n = 0
-      if (deck%n_cards > 0) n = maxval(deck%cards(:deck%n_cards)%step)
+      n = ubound(deck%first_card, 1)
       allocate (model%steps(n), stat=status)
       call check_allocation(status)
       do s = 1, n
@@ -88,7 +87,7 @@ contains
       integer :: i, n
 
       n = 0
-      do i = 1, deck%n_cards
+      do i = deck%first_card(s), deck%last_card(s)
          if (deck%cards(i)%step /= s) cycle
          select case (deck%cards(i)%keyword)
          case ('STEP')
@@ -120,7 +119,7 @@ contains
             'CLOAD', 'DLOAD', 'BASE MOTION', 'INITIAL CONDITIONS']
       integer :: i, k
 
-      do i = 1, deck%n_cards
+      do i = deck%first_card(s), deck%last_card(s)
          if (deck%cards(i)%step /= s) cycle
          k = find_word(deck%cards(i)%keyword, loads)
          if (k == 0) cycle
@@ -285,7 +284,7 @@ contains
 
       is_new = .false.
       n = 0
-      do i = 1, deck%n_cards
+      do i = deck%first_card(s), deck%last_card(s)
          if (deck%cards(i)%step /= s .or. deck%cards(i)%keyword /= keyword) cycle
          call get_word(deck%cards(i), 'OP', ops, choice, model%source, error)
          if (allocated(error)) return

@@ -6,7 +6,7 @@ module surface_reader
    use properties, only: name_length
    use element_sides, only: side_finder_type
    use model, only: model_type
-   use model_building, only: find_named, append, fit, sort_unique
+   use model_building, only: append, fit, sort_unique
    use cards, only: deck_type, card_type, count_cards, get_word, get_name_parameter
    use cards, only: parameter_place
    use fields, only: fields_type, split_line
@@ -46,6 +46,7 @@ contains
             call get_new_name(model, deck%cards(i), name, error)
             if (allocated(error)) return
             model%rigid_surfaces(n_rigid)%name = name
+            call model%rigid_surface_of%insert(name, n_rigid)
             model%rigid_surfaces(n_rigid)%place = deck%cards(i)%place
             call read_rigid_surface(model, n_rigid, deck, deck%cards(i), error)
          case default
@@ -64,7 +65,7 @@ contains
 
       call get_name_parameter(card, 'NAME', name, model%source, error)
       if (allocated(error)) return
-      if (find_named(model%surfaces, name) + find_named(model%rigid_surfaces, name) == 0) return
+      if (model%surface_of%find(name) + model%rigid_surface_of%find(name) == 0) return
       call fail_at(error, model%source, parameter_place(card, 'NAME'), &
             "surface '"//trim(name)//"' is defined twice", cure='give every surface its own name')
    end subroutine get_new_name
@@ -86,6 +87,7 @@ contains
       call get_word(card, 'TYPE', types, choice, model%source, error)
       if (allocated(error)) return
       model%surfaces(n)%name = name
+      call model%surface_of%insert(name, n)
       model%surfaces(n)%place = card%place
       if (choice == 2) then
          call read_surface_nodes(model, n, deck, card, error)

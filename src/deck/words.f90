@@ -1,6 +1,7 @@
 !> Words of the deck: comparison without case and blanks, and advice on misspelt ones.
 module words
    use text, only: upper_case
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -15,17 +16,30 @@ contains
    pure function squeezed(string) result(word)
       character(len=*), intent(in) :: string
       character(len=:), allocatable :: word
-      character(len=len(string)) :: buffer
-      integer :: i, n
+      character(len=:), allocatable :: buffer    ! not on the stack: lines may be very long
+      integer :: i, n, status
 
+      allocate (character(len=len(string)) :: buffer, stat=status)
+      call check_allocation(status)
       n = 0
       do i = 1, len(string)
          if (is_blank(string(i:i))) cycle
          n = n + 1
          buffer(n:n) = string(i:i)
       end do
-      word = upper_case(buffer(:n))
+      word = buffer(:n)
+      call raise(word)
    end function squeezed
+
+   !> Makes a-z A-Z in place.
+   pure subroutine raise(word)
+      character(len=:), allocatable, intent(inout) :: word
+      integer :: i
+
+      do i = 1, len(word)
+         word(i:i) = upper_case(word(i:i))
+      end do
+   end subroutine raise
 
    !> True for a blank or a tab.
    elemental function is_blank(letter) result(blank)
@@ -52,13 +66,15 @@ contains
    pure function advice(word, list) result(string)
       character(len=*), intent(in) :: word, list(:)
       character(len=:), allocatable :: string
+      character(len=:), allocatable :: wanted
       integer, parameter :: most = 60
       integer :: i, nearest, distance, least
 
       nearest = 0
-      least = min(3, 1 + len(squeezed(word))/3)
+      wanted = squeezed(word)
+      least = min(3, 1 + len(wanted)/3)
       do i = 1, size(list)
-         distance = edit_distance(squeezed(word), squeezed(list(i)))
+         distance = edit_distance(wanted, squeezed(list(i)))
          if (distance >= least) cycle
          least = distance
          nearest = i

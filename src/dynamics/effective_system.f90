@@ -6,6 +6,7 @@ module effective_system
    use errors, only: error_type, new_error, status_numerical
    use state_archive, only: archive_type
    use clock, only: seconds_now
+   use memory_shortage, only: check_allocation
    use steps, only: solver_mumps
    use skyline_matrix, only: skyline_type, profile_type, profile_entries, new_profile, &
          new_skyline, combine
@@ -106,13 +107,14 @@ contains
       class(effective_system_type), intent(in) :: self
       real(wp), allocatable, intent(out) :: factors(:, :)   !! (3, n)
       logical :: left(n_slots)
-      integer :: i, j
+      integer :: i, j, status
 
       left = self%slots%last_use >= 0
       do i = 1, n_slots
          left(i) = left(i) .and. all(self%slots(i)%factors >= 0.0_wp)
       end do
-      allocate (factors(3, count(left)))
+      allocate (factors(3, count(left)), stat=status)
+      call check_allocation(status)
       do i = 1, size(factors, 2)
          j = minloc(self%slots%last_use, dim=1, mask=left)
          factors(:, i) = self%slots(j)%factors

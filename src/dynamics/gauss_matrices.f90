@@ -5,6 +5,7 @@ module gauss_matrices
    use errors, only: error_type
    use clock, only: seconds_now
    use memory_shortage, only: check_allocation
+   use memory_shortage, only: check_allocation
    use skyline_matrix, only: profile_type, skyline_type, profile_entries
    use complex_skyline, only: complex_skyline_type, new_complex_skyline, column_values
    use structure, only: structure_type
@@ -92,10 +93,11 @@ contains
       real(wp), allocatable, intent(out) :: dt(:)
       logical, allocatable, intent(out) :: whole(:)   !! it has the place of whole steps
       logical :: left(n_slots)
-      integer :: i, j
+      integer :: i, j, status
 
       left = self%slots%dt > 0.0_wp .and. self%generation == matrices%generation
-      allocate (dt(count(left)), whole(count(left)))
+      allocate (dt(count(left)), whole(count(left)), stat=status)
+      call check_allocation(status)
       do i = 1, size(dt)
          j = minloc(self%slots%last_use, dim=1, mask=left)
          dt(i) = self%slots(j)%dt

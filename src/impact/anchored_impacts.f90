@@ -6,6 +6,7 @@
 module anchored_impacts
    use kinds, only: wp
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use constraint_rows, only: gap_size, rate_size
    use impact_scene, only: scene_type, contact_motion_type, accept_span, opening_rows, &
          gap_tolerance, rate_tolerance
@@ -71,6 +72,7 @@ contains
       type(contact_motion_type), intent(in) :: motion
       real(wp), intent(in) :: dt
       type(progress_type), intent(out) :: progress
+      integer :: status
 
       ! the last increment of the deck's step may be shorter: that changes nothing
       if (.not. scene%anchor%dt > 0.0_wp) scene%anchor%dt = dt
@@ -79,8 +81,11 @@ contains
       progress%t_end = motion%motion%t + dt
       progress%remaining = dt
       progress%beta = scene%system%newmark%beta
-      allocate (progress%let_go(scene%rows%n), source=-dt)
-      allocate (progress%stubborn(scene%rows%n), progress%ignored(scene%rows%n), source=.false.)
+      allocate (progress%let_go(scene%rows%n), source=-dt, stat=status)
+      call check_allocation(status)
+      allocate (progress%stubborn(scene%rows%n), progress%ignored(scene%rows%n), source=.false., &
+            stat=status)
+      call check_allocation(status)
    end subroutine start_progress
 
    !> A whole step from where the motion is, and what happens first in it. What happens at once is
@@ -131,6 +136,7 @@ contains
       type(span_type), intent(in) :: span
       type(hits_type), intent(in) :: hits
       type(contact_motion_type) :: at
+      integer :: status
 
       if (hits%n > 0) call interpolate_motion(scene, motion, next, &
             motion%motion%t + minval(hits%high(:hits%n)), at)
@@ -138,7 +144,8 @@ contains
          anchor%running = .true.
          anchor%from = motion
          if (allocated(anchor%hit)) deallocate (anchor%hit)
-         allocate (anchor%hit(scene%rows%n), source=.false.)
+         allocate (anchor%hit(scene%rows%n), source=.false., stat=status)
+         call check_allocation(status)
          anchor%hit(hits%row(:hits%n)) = .true.
          if (hits%n > 0) then
             anchor%to = at

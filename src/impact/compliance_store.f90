@@ -3,6 +3,7 @@
 !> matrices are kept.
 module compliance_store
    use kinds, only: wp, int64
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -103,10 +104,11 @@ contains
       integer(int64), intent(in) :: generation
       integer, allocatable :: shelves(:)
       logical :: left(n_shelves)
-      integer :: i
+      integer :: i, status
 
       left = self%shelves%generation == generation
-      allocate (shelves(count(left)))
+      allocate (shelves(count(left)), stat=status)
+      call check_allocation(status)
       do i = 1, size(shelves)
          shelves(i) = minloc(self%shelves%last_use, dim=1, mask=left)
          left(shelves(i)) = .false.
@@ -172,12 +174,14 @@ contains
       real(wp), allocatable, intent(inout) :: a(:, :)
       integer, intent(in) :: m, n
       real(wp), allocatable :: larger(:, :)
+      integer :: status
 
       if (allocated(a)) then
          if (size(a, 1) == m .and. size(a, 2) >= n) return
          if (size(a, 1) /= m) deallocate (a)
       end if
-      allocate (larger(m, max(8, 2*(n - 1))))
+      allocate (larger(m, max(8, 2*(n - 1))), stat=status)
+      call check_allocation(status)
       if (allocated(a)) larger(:, :n - 1) = a(:, :n - 1)
       call move_alloc(larger, a)
    end subroutine make_room

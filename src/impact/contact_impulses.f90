@@ -3,6 +3,7 @@
 module contact_impulses
    use kinds, only: wp
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use complementarity, only: solve_complementarity, solve_equality
    use mesh, only: scheme_implicit, scheme_explicit
    use motion_state, only: state_type
@@ -125,6 +126,7 @@ contains
       real(wp), allocatable :: q(:), forces(:)
       integer :: sense(scene%rows%n)
       logical :: solved
+      integer :: status
 
       call mass_compliance(scene, held, compliance, error)
       if (allocated(error)) return
@@ -133,7 +135,8 @@ contains
                + row_curvature(scene%rows, motion%motion), &
                slip_products(scene%rows, motion%motion%a))
          sense = slip_senses(scene, motion)
-         allocate (forces(size(q)))
+         allocate (forces(size(q)), stat=status)
+         call check_allocation(status)
          call solve_rows(compliance%w, q, scene%rows%friction(compliance%rows), &
                held(compliance%rows), forces, solved, sense(compliance%rows))
          if (.not. solved) then

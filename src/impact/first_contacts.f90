@@ -2,6 +2,7 @@
 module first_contacts
    use kinds, only: wp
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use complementarity, only: solve_complementarity
    use constraint_rows, only: row_gaps, row_rates, row_accelerations, row_curvature, gap_size, &
          rate_size, may_hit
@@ -26,14 +27,15 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(impact_type) :: impact
       real(wp) :: gap_limit
-      integer :: i
+      integer :: i, status
       logical :: known
 
       gap_limit = gap_tolerance*gap_size(scene%rows, motion%motion, dt)
       impact%dt = dt
       impact%beta = beta
       impact%rate_limit = rate_tolerance*rate_size(scene%rows, motion%motion)
-      allocate (impact%forced(scene%rows%n), impact%near(scene%rows%n))
+      allocate (impact%forced(scene%rows%n), impact%near(scene%rows%n), stat=status)
+      call check_allocation(status)
       impact%forced = .false.
       call capture_pressed(scene, motion, gap_limit, impact%rate_limit, known, error)
       if (allocated(error)) return
@@ -65,6 +67,7 @@ contains
       real(wp) :: a_rows(scene%rows%n)
       real(wp), allocatable :: lambda(:)
       logical :: resting(scene%rows%n), solved
+      integer :: status
 
       resting = may_hit(scene%rows) .and. row_gaps(scene%rows, motion%motion) <= gap_limit .and. &
             abs(row_rates(scene%rows, motion%motion)) <= rate_limit
@@ -75,7 +78,8 @@ contains
       if (allocated(error)) return
       call mass_compliance(scene, resting, compliance, error, .true.)
       if (allocated(error)) return
-      allocate (lambda(size(compliance%rows)))
+      allocate (lambda(size(compliance%rows)), stat=status)
+      call check_allocation(status)
       a_rows = row_accelerations(scene%rows, motion%motion%a) &
             + row_curvature(scene%rows, motion%motion)
       call solve_complementarity(compliance%w, a_rows(compliance%rows), lambda, solved)

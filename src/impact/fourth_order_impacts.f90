@@ -4,6 +4,7 @@
 module fourth_order_impacts
    use kinds, only: wp
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use impact_scene, only: scene_type, contact_motion_type
    use impact_method, only: impact_method_type
    use impact_time, only: span_type, hits_type
@@ -75,6 +76,7 @@ contains
       type(contact_motion_type), intent(in) :: motion
       real(wp), intent(in) :: dt
       type(progress_type), intent(out) :: progress
+      integer :: status
 
       scene%whole_step = dt
       ! accelerations are those of equilibrium, damping forces of a jump included
@@ -83,7 +85,8 @@ contains
       progress%t_end = motion%motion%t + dt
       progress%remaining = dt
       progress%beta = 0.0_wp
-      allocate (progress%let_go(scene%rows%n), source=-dt)
+      allocate (progress%let_go(scene%rows%n), source=-dt, stat=status)
+      call check_allocation(status)
    end subroutine begin
 
    !> Takes a span of smooth motion; held rows stay on the wall to round-off.

@@ -4,6 +4,7 @@
 module fourth_order_step
    use kinds, only: wp, int64
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use square_systems, only: solve_complex_square
    use motion_state, only: state_type
    use structure, only: inertia_force
@@ -43,10 +44,13 @@ contains
       real(wp), intent(in) :: dt
       type(smooth_step_type), intent(out) :: step
       type(error_type), allocatable, intent(out) :: error
+      integer :: status
 
       step%dt = dt
-      allocate (step%a(size(from%motion%d)))
-      allocate (step%lambda(scene%rows%n), source=(0.0_wp, 0.0_wp))
+      allocate (step%a(size(from%motion%d)), stat=status)
+      call check_allocation(status)
+      allocate (step%lambda(scene%rows%n), source=(0.0_wp, 0.0_wp), stat=status)
+      call check_allocation(status)
       call start_gauss(scene%system, from%motion, dt, step%start, step%a)
       call free_acceleration(scene%system, step%start, dt, is_whole(scene, dt), step%a, error)
       if (allocated(error)) return
@@ -98,11 +102,12 @@ contains
       real(wp), intent(in) :: dt
       type(complex_columns_type) :: held
       complex(wp) :: motion(scene%rows%n)
-      integer :: j, n_freedoms
+      integer :: j, n_freedoms, status
 
       if (is_at_hand(scene%held, scene%system%matrices%generation, rows, dt)) return
       n_freedoms = scene%system%structure%map%n_freedoms
-      allocate (held%x(n_freedoms, size(rows)), held%w(size(rows), size(rows)))
+      allocate (held%x(n_freedoms, size(rows)), held%w(size(rows), size(rows)), stat=status)
+      call check_allocation(status)
       do j = 1, size(rows)
          held%x(:, j) = solve_complex(scene%system, &
                cmplx(row_vector(scene%rows, rows(j), n_freedoms), kind=wp))

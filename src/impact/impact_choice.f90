@@ -1,6 +1,7 @@
 !> Which rows take part in an impact.
 module impact_choice
    use kinds, only: wp
+   use memory_shortage, only: check_allocation
    use constraint_rows, only: row_gaps, row_rates, rate_size, may_hit
    use impact_scene, only: scene_type, contact_motion_type, gap_tolerance, merge_gap_tolerance, &
          rate_tolerance, merge_time_tolerance
@@ -29,11 +30,12 @@ contains
       type(progress_type), intent(in) :: progress
       type(impact_type), intent(out) :: impact
       real(wp), dimension(scene%rows%n) :: gaps, rates
-      real(wp) :: near
-      integer :: i, row
+      real(wp) :: near, at_wall, nearest
+      integer :: i, row, status
 
       gaps = row_gaps(scene%rows, motion%motion)
       rates = row_rates(scene%rows, motion%motion)
+      at_wall = span%gap_limit*(merge_gap_tolerance/gap_tolerance)
       near = progress%dt*merge(finest_merge_time, merge_time_tolerance, scene%settings%fourth_order)
       impact%dt = progress%dt
       impact%beta = progress%beta
@@ -41,14 +43,13 @@ contains
       impact%rate_limit = rate_tolerance*rate_size(scene%rows, motion%motion)
       impact%new = may_hit(scene%rows) .and. .not. motion%touching .and. &
             rates < -impact%rate_limit .and. &
-            (gaps <= span%gap_limit*(merge_gap_tolerance/gap_tolerance) .or. &
-            gaps <= -near*rates)
+            (gaps <= at_wall .or. gaps <= -near*rates)
       ! an impact elsewhere may push a row at the wall; without a rebound of its own it answers at
       ! once
       impact%near = may_hit(scene%rows) .and. .not. motion%touching .and. .not. impact%new .and. &
-            .not. scene%rows%restitution > 0.0_wp .and. &
-            gaps <= span%gap_limit*(merge_gap_tolerance/gap_tolerance)
-      allocate (impact%forced(scene%rows%n))
+            .not. scene%rows%restitution > 0.0_wp .and. gaps <= at_wall
+      allocate (impact%forced(scene%rows%n), stat=status)
+      call check_allocation(status)
       impact%forced = .false.
       do i = 1, hits%n
          row = hits%row(i)
@@ -56,8 +57,9 @@ contains
                rates(row) >= -impact%rate_limit
       end do
       if (.not. any(impact%new) .and. .not. any(impact%forced)) then
-         ! never go on with nothing: the row that is nearest then
-         impact%forced(hits%row(minloc(gaps(hits%row(:hits%n)), dim=1))) = .true.
+         ! never go on with nothing: the row that is nearest then, and those that are as near
+         nearest = minval(gaps(hits%row(:hits%n)))
+         impact%forced(hits%row(:hits%n)) = gaps(hits%row(:hits%n)) <= nearest + at_wall
       end if
       impact%new = impact%new .or. impact%forced
       impact%near = impact%near .and. .not. impact%new

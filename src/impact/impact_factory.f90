@@ -2,6 +2,7 @@
 module impact_factory
    use kinds, only: wp
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use places, only: fail_at
    use model, only: model_type
    use steps, only: step_type, procedure_dynamic
@@ -39,11 +40,7 @@ contains
       settings%fourth_order = any(model%steps%procedure == procedure_dynamic .and. &
             model%steps%order == 4)
       if (size(list%rows) == 0) then
-         if (settings%fourth_order) then
-            allocate (fourth_order_type :: method)
-         else
-            allocate (no_impact_type :: method)
-         end if
+         call allocate_method(0, settings, method)
          return
       end if
       first = model%interactions(list%rows(1)%interaction)
@@ -66,23 +63,39 @@ contains
             any(model%interactions(list%rows%interaction)%friction > 0.0_wp)
       settings%pure = settings%fictitious .and. .not. &
             all(model%interactions(list%rows%interaction)%has_restitution)
-      select case (first%method)
-      case (method_fictitious_force)
-         allocate (fictitious_force_type :: method)
-      case (method_penalty)
-         allocate (penalty_method_type :: method)
-      case (method_lagrange)
-         allocate (lagrange_multiplier_type :: method)
-      case default
-         if (settings%fourth_order) then
-            allocate (fourth_order_type :: method)
-         else if (settings%anchored) then
-            allocate (anchored_type :: method)
-         else
-            allocate (transformation_type :: method)
-         end if
-      end select
+      call allocate_method(first%method, settings, method)
    end subroutine make_impact_method
+
+   !> Of the type that does what is asked for.
+   subroutine allocate_method(choice, settings, method)
+      integer, intent(in) :: choice              !! method_ of the interactions, 0: no contact rows
+      type(impact_settings_type), intent(in) :: settings
+      class(impact_method_type), allocatable, intent(out) :: method
+      integer :: status
+
+      if (choice == method_fictitious_force) then
+         allocate (fictitious_force_type :: method, stat=status)
+         call check_allocation(status)
+      else if (choice == method_penalty) then
+         allocate (penalty_method_type :: method, stat=status)
+         call check_allocation(status)
+      else if (choice == method_lagrange) then
+         allocate (lagrange_multiplier_type :: method, stat=status)
+         call check_allocation(status)
+      else if (settings%fourth_order) then
+         allocate (fourth_order_type :: method, stat=status)
+         call check_allocation(status)
+      else if (choice == 0) then
+         allocate (no_impact_type :: method, stat=status)
+         call check_allocation(status)
+      else if (settings%anchored) then
+         allocate (anchored_type :: method, stat=status)
+         call check_allocation(status)
+      else
+         allocate (transformation_type :: method, stat=status)
+         call check_allocation(status)
+      end if
+   end subroutine allocate_method
 
    !> What a method cannot do in a step: the fictitious force of the end of an explicit step does
    !> not move that end; the pure method leaves an overlap that a much shorter step throws back.

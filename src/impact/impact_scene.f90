@@ -3,6 +3,7 @@
 module impact_scene
    use kinds, only: wp, int64
    use state_archive, only: archive_type
+   use memory_shortage, only: check_allocation
    use text, only: to_text
    use surfaces, only: beta_automatic, method_transformation
    use contact_motion, only: contact_motion_type, new_contact_motion, copy_contact_motion, &
@@ -214,10 +215,15 @@ contains
       type(scene_type), intent(inout) :: scene
       type(event_type), intent(in) :: event
       type(event_type), allocatable :: longer(:)
+      integer :: status
 
-      if (.not. allocated(scene%events)) allocate (scene%events(16))
+      if (.not. allocated(scene%events)) then
+         allocate (scene%events(16), stat=status)
+         call check_allocation(status)
+      end if
       if (scene%n_events == size(scene%events)) then
-         allocate (longer(2*size(scene%events)))
+         allocate (longer(2*size(scene%events)), stat=status)
+         call check_allocation(status)
          longer(:scene%n_events) = scene%events
          call move_alloc(longer, scene%events)
       end if

@@ -3,6 +3,7 @@
 module impact_time
    use kinds, only: wp
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use constraint_rows, only: row_gaps, row_rates, row_accelerations, may_hit, far_gap
    use impact_scene, only: scene_type, contact_motion_type
    use constrained_step, only: advance_smoothly
@@ -59,9 +60,11 @@ contains
       logical :: free(scene%rows%n)
       type(path_type) :: path
       real(wp) :: bracket(2)
-      integer :: i
+      integer :: i, status
 
-      allocate (hits%row(scene%rows%n), hits%low(scene%rows%n), hits%high(scene%rows%n))
+      allocate (hits%row(scene%rows%n), hits%low(scene%rows%n), hits%high(scene%rows%n), &
+            stat=status)
+      call check_allocation(status)
       g0 = start_gaps(scene, from, span)
       r0 = row_rates(scene%rows, from%motion)
       a0 = row_accelerations(scene%rows, from%motion%a)

@@ -5,6 +5,7 @@ module kept_solutions
    use text, only: to_text
    use errors, only: error_type
    use state_archive, only: archive_type
+   use memory_shortage, only: check_allocation
    use motion_state, only: state_type
    use gauss_matrices, only: kept_gauss_steps, drop_gauss
    use gauss_step, only: prepare_step
@@ -45,7 +46,7 @@ contains
    subroutine pass_state(self, archive)
       class(kept_solutions_type), intent(inout) :: self
       type(archive_type), intent(inout) :: archive
-      integer :: i
+      integer :: i, status
 
       call archive%pass('factors', self%factors)
       call archive%pass('gauss_dt', self%gauss_dt)
@@ -53,7 +54,10 @@ contains
       call archive%pass('held_dt', self%held_dt)
       call archive%pass('held_rows', self%held_rows)
       call archive%pass('n_shelves', self%n_shelves)
-      if (archive%reading) allocate (self%shelves(self%n_shelves))
+      if (archive%reading) then
+         allocate (self%shelves(self%n_shelves), stat=status)
+         call check_allocation(status)
+      end if
       do i = 1, self%n_shelves
          call archive%enter('shelf_'//to_text(i))
          call archive%pass_fixed('factors', self%shelves(i)%factors)
@@ -70,7 +74,7 @@ contains
       integer, allocatable :: shelves(:)
       real(wp), allocatable :: factors(:, :)
       logical, allocatable :: stays(:)
-      integer :: i
+      integer :: i, status
 
       associate (system => scene%system)
          call system%matrices%kept_factors(factors)
@@ -80,7 +84,8 @@ contains
          call kept_gauss_steps(system%gauss, system%matrices, self%gauss_dt, self%gauss_whole)
          shelves = shelves_by_age(scene%compliances, system%matrices%generation)
          self%n_shelves = size(shelves)
-         allocate (self%shelves(self%n_shelves))
+         allocate (self%shelves(self%n_shelves), stat=status)
+         call check_allocation(status)
          do i = 1, self%n_shelves
             associate (shelf => scene%compliances%shelves(shelves(i)))
                self%shelves(i)%factors = shelf%factors

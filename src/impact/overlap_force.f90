@@ -3,6 +3,7 @@
 module overlap_force
    use kinds, only: wp
    use errors, only: error_type, new_error, status_numerical
+   use memory_shortage, only: check_allocation
    use complementarity, only: solve_complementarity, solve_equality
    use constraint_rows, only: row_gaps, row_accelerations, gap_size, law_overlap
    use impact_scene, only: scene_type, contact_motion_type, gap_tolerance
@@ -41,6 +42,7 @@ contains
       logical, dimension(scene%rows%n) :: overlapping, eligible
       real(wp), allocatable :: lambda(:)
       real(wp) :: limit
+      integer :: status
 
       eligible = scene%rows%facing .and. scene%rows%law == law_overlap .and. .not. &
             (to%touching .or. to%leaving)
@@ -48,7 +50,8 @@ contains
       limit = gap_tolerance*gap_size(scene%rows, to%motion, 0.0_wp)
       gaps = free_gaps
       overlapping = .false.
-      allocate (lambda(0))
+      allocate (lambda(0), stat=status)
+      call check_allocation(status)
       do while (any(eligible .and. .not. overlapping .and. gaps < -limit))
          overlapping = overlapping .or. (eligible .and. gaps < -limit)
          call find_overlap(scene, beta_dt2, to, overlapping, overlap, error)
@@ -74,7 +77,7 @@ contains
       type(overlap_type), intent(out) :: overlap
       type(error_type), allocatable, intent(out) :: error
       type(compliance_type) :: all
-      integer :: i, j, n, m
+      integer :: i, j, n, m, status
       logical :: solved
 
       overlap%rows = pack([(i, i=1, scene%rows%n)], overlapping)
@@ -82,7 +85,8 @@ contains
       n = size(overlap%rows)
       m = size(overlap%held)
       call find_compliance(scene, [overlap%rows, overlap%held], all)
-      allocate (overlap%yield(m, n))
+      allocate (overlap%yield(m, n), stat=status)
+      call check_allocation(status)
       associate (w => all%w, x => unit_motions(scene, all))
          do j = 1, n
             call solve_equality(w(n + 1:, n + 1:), w(n + 1:, j), overlap%yield(:, j), solved)
@@ -107,8 +111,10 @@ contains
       type(error_type), allocatable, intent(out) :: error
       real(wp) :: alpha
       logical :: solved
+      integer :: status
 
-      allocate (lambda(size(free_gaps)))
+      allocate (lambda(size(free_gaps)), stat=status)
+      call check_allocation(status)
       if (.not. scene%settings%direct) then
          call iterate_forces(scene, w, free_gaps, lambda, solved)
          if (solved .and. all(lambda >= 0.0_wp)) return

@@ -4,6 +4,7 @@
 module row_compliance
    use kinds, only: wp, int64
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use equation_of_motion, only: prepare_mass, solve_together
    use compliance_store, only: choose_shelf, missing_columns, begin_batch, keep_column, &
          add_columns, most_entries
@@ -104,7 +105,7 @@ contains
       integer, intent(in) :: columns(:)
       logical, intent(in) :: on_mass
       type(compliance_type), intent(inout) :: compliance
-      integer :: j
+      integer :: j, status
 
       associate (matrices => scene%system%matrices)
          call choose_shelf(scene%compliances, matrices%generation, matrices%current_factors(), &
@@ -113,8 +114,10 @@ contains
       associate (shelf => scene%compliances%shelves(compliance%shelf), n => scene%rows%n)
          call find_and_keep(scene, missing_columns(shelf, pack(columns, columns > 0)), on_mass, &
                compliance%shelf)
-         allocate (compliance%place(size(columns)))
-         allocate (compliance%w(size(columns), size(columns)))
+         allocate (compliance%place(size(columns)), stat=status)
+         call check_allocation(status)
+         allocate (compliance%w(size(columns), size(columns)), stat=status)
+         call check_allocation(status)
          compliance%place = 0
          compliance%w = 0.0_wp
          do j = 1, size(columns)
@@ -168,10 +171,11 @@ contains
       integer, intent(in) :: columns(:)
       logical, intent(in) :: on_mass
       type(compliance_type), intent(inout) :: compliance
-      integer :: j
+      integer :: j, status
 
       call column_motions(scene, columns, on_mass, compliance%x)
-      allocate (compliance%w(size(columns), size(columns)))
+      allocate (compliance%w(size(columns), size(columns)), stat=status)
+      call check_allocation(status)
       compliance%w = 0.0_wp
       do j = 1, size(columns)
          if (columns(j) == 0) cycle
@@ -186,10 +190,11 @@ contains
       integer, intent(in) :: columns(:)
       logical, intent(in) :: on_mass
       real(wp), allocatable, intent(out) :: x(:, :)   !! (n_freedoms, size(columns))
-      integer :: j, n_freedoms
+      integer :: j, n_freedoms, status
 
       n_freedoms = scene%system%structure%map%n_freedoms
-      allocate (x(n_freedoms, size(columns)))
+      allocate (x(n_freedoms, size(columns)), stat=status)
+      call check_allocation(status)
       if (size(columns) == 0) return
       do j = 1, size(columns)
          if (columns(j) == 0) then

@@ -2,6 +2,7 @@
 module row_matrix
    use kinds, only: wp
    use state_archive, only: archive_type
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -45,6 +46,7 @@ contains
    pure subroutine new_row_matrix(self, n, n_entries)
       type(row_matrix_type), intent(inout) :: self
       integer, intent(in) :: n, n_entries        !! rows; entries to expect
+      integer :: status
 
       if (allocated(self%first)) then
          if (self%n /= n) deallocate (self%first)
@@ -53,9 +55,13 @@ contains
          if (size(self%freedom) < n_entries) deallocate (self%freedom, self%coefficient)
       end if
       self%n = n
-      if (.not. allocated(self%first)) allocate (self%first(n + 1))
+      if (.not. allocated(self%first)) then
+         allocate (self%first(n + 1), stat=status)
+         call check_allocation(status)
+      end if
       if (.not. allocated(self%freedom)) then
-         allocate (self%freedom(n_entries), self%coefficient(n_entries))
+         allocate (self%freedom(n_entries), self%coefficient(n_entries), stat=status)
+         call check_allocation(status)
       end if
       self%first = 1
    end subroutine new_row_matrix

@@ -5,6 +5,7 @@ module row_placement
    use errors, only: error_type
    use places, only: fail_at
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    use model, only: model_type
    use surfaces, only: interaction_type, method_fictitious_force, method_penalty, method_lagrange
    use structure, only: structure_type
@@ -32,7 +33,7 @@ contains
       type(model_type), intent(in) :: model
       type(structure_type), intent(in) :: structure
       type(error_type), allocatable, intent(out) :: error
-      integer :: i
+      integer :: i, status
 
       self%n = size(list%rows)
       self%moving = geometry%moving
@@ -42,10 +43,14 @@ contains
       self%pair = list%rows%pair
       self%node_id = model%nodes%id(list%rows%node)
       self%sliding_motion = self%motion
-      allocate (self%wall(3, self%n))
+      allocate (self%wall(3, self%n), stat=status)
+      call check_allocation(status)
       self%wall = 0.0_wp
-      allocate (self%offset(self%n), self%bend(self%n), self%facing(self%n), self%weight(self%n))
-      allocate (self%normal(3, self%n), self%tangent(3, self%n))
+      allocate (self%offset(self%n), self%bend(self%n), self%facing(self%n), self%weight(self%n), &
+            stat=status)
+      call check_allocation(status)
+      allocate (self%normal(3, self%n), self%tangent(3, self%n), stat=status)
+      call check_allocation(status)
       call copy_behaviour(self, list, model)
       call write_rows(self, geometry%frozen, structure%map)
       self%offset = merge(geometry%frozen%gap, far_gap, self%facing)
@@ -68,11 +73,14 @@ contains
       type(contact_pair_list_type), intent(in) :: list
       type(model_type), intent(in) :: model
       type(interaction_type) :: interaction
-      integer :: i
+      integer :: i, status
 
-      allocate (self%sustained(self%n), self%restitution(self%n), self%capture(self%n))
-      allocate (self%law(self%n), self%stiffness(self%n), self%friction(self%n))
-      allocate (self%massless(self%n))
+      allocate (self%sustained(self%n), self%restitution(self%n), self%capture(self%n), stat=status)
+      call check_allocation(status)
+      allocate (self%law(self%n), self%stiffness(self%n), self%friction(self%n), stat=status)
+      call check_allocation(status)
+      allocate (self%massless(self%n), stat=status)
+      call check_allocation(status)
       do i = 1, self%n
          interaction = model%interactions(list%rows(i)%interaction)
          self%sustained(i) = .not. interaction%has_restitution

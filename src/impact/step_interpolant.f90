@@ -2,6 +2,7 @@
 !> velocities, and the gaps on it.
 module step_interpolant
    use kinds, only: wp
+   use memory_shortage, only: check_allocation
    use equation_of_motion, only: impose
    use constraint_rows, only: row_gaps, row_rates, may_hit
    use impact_scene, only: scene_type, contact_motion_type
@@ -55,9 +56,11 @@ contains
       real(wp), dimension(scene%rows%n, 2) :: gaps, rates
       logical :: free(scene%rows%n)
       real(wp) :: x
-      integer :: i
+      integer :: i, status
 
-      allocate (hits%row(scene%rows%n), hits%low(scene%rows%n), hits%high(scene%rows%n))
+      allocate (hits%row(scene%rows%n), hits%low(scene%rows%n), hits%high(scene%rows%n), &
+            stat=status)
+      call check_allocation(status)
       gaps(:, 1) = row_gaps(scene%rows, from%motion)
       gaps(:, 2) = row_gaps(scene%rows, to%motion)
       rates(:, 1) = row_rates(scene%rows, from%motion)

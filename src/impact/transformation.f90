@@ -4,6 +4,7 @@
 module transformation
    use kinds, only: wp
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use surfaces, only: beta_given
    use constraint_rows, only: row_gaps, row_rates
    use impact_scene, only: scene_type, contact_motion_type, accept_span, exchange_motions, &
@@ -71,13 +72,17 @@ contains
       type(hits_type) :: hits
       logical :: release(scene%rows%n), aim
       real(wp), dimension(scene%rows%n) :: gaps, rates   ! where the motion is
+      integer :: status
 
       progress%dt = dt
       progress%t_end = motion%motion%t + dt
       progress%remaining = dt
       progress%beta = scene%system%newmark%beta
-      allocate (progress%let_go(scene%rows%n), source=-dt)
-      allocate (progress%stubborn(scene%rows%n), progress%ignored(scene%rows%n), source=.false.)
+      allocate (progress%let_go(scene%rows%n), source=-dt, stat=status)
+      call check_allocation(status)
+      allocate (progress%stubborn(scene%rows%n), progress%ignored(scene%rows%n), source=.false., &
+            stat=status)
+      call check_allocation(status)
       call look_here(scene, motion, gaps, rates)
       aim = .true.
       call exchange_motions(scene%spare, next)

@@ -14,7 +14,7 @@ module eigen_solver
    implicit none
    private
 
-   public :: eigen_type, find_eigenvalues
+   public :: eigen_type, find_eigenvalues, small
    public :: outcome_found, outcome_singular, outcome_indefinite, outcome_not_converged
 
    integer, parameter :: outcome_found = 0
@@ -26,6 +26,8 @@ module eigen_solver
    integer, parameter :: small = 200
    !> Up to here condensation helps out when Lanczos' method fails.
    integer, parameter :: not_too_large = 3000
+   !> Vectors that integers of ARPACK can count the products of.
+   integer, parameter :: most_vectors = 40000
    !> Pivots below this part of the diagonal make the shift 0 too risky.
    real(wp), parameter :: safe_pivot = 1.0e-8_wp
    !> Largest |K x - lambda M x| as a part of |K| |x| + |lambda| |M| |x|.
@@ -126,6 +128,7 @@ contains
          n = n_wanted + 2
          n_basis = max(2*n + 1, n + 20)
          do attempt = 1, 3
+            if (min(n_basis, n_massive) > most_vectors) exit
             allocate (lambda(n), x(mass%n, n), stat=status)
             call check_allocation(status)
             call lanczos(factors, mass, self%sigma, min(n_basis, n_massive), lambda, x, info)

@@ -200,6 +200,11 @@ contains
          instance%comm = world()
          instance%par = 1
          instance%sym = 2
+         ! MUMPS looks at some of its settings and results before it gives them their first values
+         instance%icntl = 0
+         instance%keep = 0
+         instance%info = 0
+         instance%infog = 0
       end if
       instance%job = job
       call dmumps(instance)

@@ -52,8 +52,8 @@ contains
       call setter(1_c_int)
    end subroutine set_threads
 
-   !> Has OpenBLAS take its work space now: later, where the address space is limited and used up, it
-   !> would try without end.
+   !> Has OpenBLAS take its work space now: later, where the address space is limited and full,
+   !> it would try without end.
    subroutine claim_work_space()
       real(wp) :: one(1, 1), x(1, 1)
 

@@ -6,6 +6,7 @@ module model
    use histories, only: amplitude_type, boundary_type, nodal_value_type, equation_type
    use steps, only: step_type
    use places, only: source_type, source_line_type
+   use name_map, only: name_map_type
    implicit none
    private
 
@@ -32,6 +33,9 @@ module model
       type(nodal_value_type), allocatable :: initial_velocities(:)
       type(step_type), allocatable :: steps(:)
       type(source_line_type), allocatable :: notes(:)   !! remarks on the deck, for the log
+      !> Names to indices
+      type(name_map_type) :: node_set_of, element_set_of, material_of, amplitude_of
+      type(name_map_type) :: surface_of, rigid_surface_of, interaction_of
       integer :: compression = 0                 !! level of the results' compression, 0 to 9
    end type model_type
 

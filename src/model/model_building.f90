@@ -1,24 +1,17 @@
-!> Putting a model together: appending in amortised constant time, and finding by name.
+!> Putting a model together: appending in amortised constant time, and sorting.
 module model_building
    use memory_shortage, only: check_allocation
-   use mesh, only: set_type
-   use properties, only: material_type
-   use surfaces, only: surface_type, rigid_surface_type, interaction_type
-   use histories, only: amplitude_type, boundary_type, nodal_value_type
+   use memory_shortage, only: check_allocation
+   use histories, only: boundary_type, nodal_value_type
+   use places, only: place_type
    implicit none
    private
 
-   public :: find_named, append, fit, sort_unique
-
-   !> Index of the item with this name, 0 if there is none.
-   interface find_named
-      module procedure :: find_set, find_material, find_amplitude, find_surface
-      module procedure :: find_rigid_surface, find_interaction
-   end interface find_named
+   public :: append, fit, sort_unique
 
    !> Puts an item behind the first n of a list that grows by doubling; n counts on.
    interface append
-      module procedure :: append_integer, append_boundary, append_nodal_value
+      module procedure :: append_integer, append_boundary, append_nodal_value, append_place
    end interface append
 
    !> Cuts a list to its first n items; afterwards it is allocated.
@@ -27,72 +20,6 @@ module model_building
    end interface fit
 
 contains
-
-   pure function find_set(list, name) result(position)
-      type(set_type), intent(in) :: list(:)
-      character(len=*), intent(in) :: name
-      integer :: position
-
-      do position = 1, size(list)
-         if (list(position)%name == name) return
-      end do
-      position = 0
-   end function find_set
-
-   pure function find_material(list, name) result(position)
-      type(material_type), intent(in) :: list(:)
-      character(len=*), intent(in) :: name
-      integer :: position
-
-      do position = 1, size(list)
-         if (list(position)%name == name) return
-      end do
-      position = 0
-   end function find_material
-
-   pure function find_amplitude(list, name) result(position)
-      type(amplitude_type), intent(in) :: list(:)
-      character(len=*), intent(in) :: name
-      integer :: position
-
-      do position = 1, size(list)
-         if (list(position)%name == name) return
-      end do
-      position = 0
-   end function find_amplitude
-
-   pure function find_surface(list, name) result(position)
-      type(surface_type), intent(in) :: list(:)
-      character(len=*), intent(in) :: name
-      integer :: position
-
-      do position = 1, size(list)
-         if (list(position)%name == name) return
-      end do
-      position = 0
-   end function find_surface
-
-   pure function find_rigid_surface(list, name) result(position)
-      type(rigid_surface_type), intent(in) :: list(:)
-      character(len=*), intent(in) :: name
-      integer :: position
-
-      do position = 1, size(list)
-         if (list(position)%name == name) return
-      end do
-      position = 0
-   end function find_rigid_surface
-
-   pure function find_interaction(list, name) result(position)
-      type(interaction_type), intent(in) :: list(:)
-      character(len=*), intent(in) :: name
-      integer :: position
-
-      do position = 1, size(list)
-         if (list(position)%name == name) return
-      end do
-      position = 0
-   end function find_interaction
 
    pure subroutine append_integer(list, n, item)
       integer, allocatable, intent(inout) :: list(:)
@@ -157,6 +84,27 @@ contains
       list(n) = item
    end subroutine append_nodal_value
 
+   pure subroutine append_place(list, n, item)
+      type(place_type), allocatable, intent(inout) :: list(:)
+      integer, intent(inout) :: n
+      type(place_type), intent(in) :: item
+      type(place_type), allocatable :: longer(:)
+      integer :: status
+
+      if (.not. allocated(list)) then
+         allocate (list(8), stat=status)
+         call check_allocation(status)
+      end if
+      if (n == size(list)) then
+         allocate (longer(2*n + 8), stat=status)
+         call check_allocation(status)
+         longer(:n) = list
+         call move_alloc(longer, list)
+      end if
+      n = n + 1
+      list(n) = item
+   end subroutine append_place
+
    pure subroutine fit_integers(list, n)
       integer, allocatable, intent(inout) :: list(:)
       integer, intent(in) :: n
@@ -193,24 +141,20 @@ contains
       if (size(list) > n) list = list(:n)
    end subroutine fit_nodal_values
 
-   !> Sorts ascending and keeps each number once.
+   !> Sorts ascending and keeps each number once: runs that ascend already are merged two by two.
    pure subroutine sort_unique(list)
       integer, allocatable, intent(inout) :: list(:)
-      integer, allocatable :: other(:)
-      integer :: i, n, width, status
+      integer, allocatable :: other(:), starts(:)
+      integer :: i, n, status
 
-      n = size(list)
-      if (n < 2) return
-      if (any(list(2:) <= list(:n - 1))) then
-         allocate (other(n), stat=status)
+      if (size(list) < 2) return
+      call find_runs(list, starts)
+      do while (size(starts) > 2)
+         allocate (other(size(list)), stat=status)
          call check_allocation(status)
-         width = 1
-         do while (width < n)
-            call merge_runs(list, other, width)
-            list = other
-            width = 2*width
-         end do
-      end if
+         call merge_runs(list, starts, other)
+         call move_alloc(other, list)
+      end do
       n = 1
       do i = 2, size(list)
          if (list(i) == list(n)) cycle
@@ -220,21 +164,37 @@ contains
       call fit_integers(list, n)
    end subroutine sort_unique
 
-   !> One pass of a merge sort: sorted runs of a width become runs of twice the width.
-   pure subroutine merge_runs(list, merged, width)
-      integer, intent(in) :: list(:), width
+   !> Where the stretches begin that do not descend; behind them the end of the list.
+   pure subroutine find_runs(list, starts)
+      integer, intent(in) :: list(:)
+      integer, allocatable, intent(out) :: starts(:)
+      integer :: i, n
+
+      n = 0
+      call append_integer(starts, n, 1)
+      do i = 2, size(list)
+         if (list(i) < list(i - 1)) call append_integer(starts, n, i)
+      end do
+      call append_integer(starts, n, size(list) + 1)
+      call fit_integers(starts, n)
+   end subroutine find_runs
+
+   !> Merges the first run with the second, the third with the fourth, and so on.
+   pure subroutine merge_runs(list, starts, merged)
+      integer, intent(in) :: list(:)
+      integer, allocatable, intent(inout) :: starts(:)   !! of the runs; out: of the merged
       integer, intent(out) :: merged(:)
-      integer :: start, middle, finish, i, j, k
+      integer :: run, n_runs, finish, i, j, k
       logical :: from_left
 
-      do start = 1, size(list), 2*width
-         middle = min(start + width, size(list) + 1)
-         finish = min(start + 2*width, size(list) + 1)
-         i = start
-         j = middle
-         do k = start, finish - 1
+      n_runs = size(starts) - 1
+      do run = 1, n_runs, 2
+         i = starts(run)
+         j = starts(run + 1)
+         finish = starts(min(run + 2, n_runs + 1))
+         do k = starts(run), finish - 1
             from_left = j >= finish
-            if (.not. from_left .and. i < middle) from_left = list(i) <= list(j)
+            if (.not. from_left .and. i < starts(run + 1)) from_left = list(i) <= list(j)
             if (from_left) then
                merged(k) = list(i)
                i = i + 1
@@ -244,6 +204,7 @@ contains
             end if
          end do
       end do
+      starts = [starts(1:n_runs:2), starts(n_runs + 1)]
    end subroutine merge_runs
 
 end module model_building

@@ -1,6 +1,7 @@
 !> Where in the deck a thing was said, and messages that point there.
 module places
    use errors, only: error_type, new_error, status_deck
+   use display, only: displayed, display_width, abridged
    use text, only: to_text
    use memory_shortage, only: check_allocation
    implicit none
@@ -9,7 +10,8 @@ module places
    public :: place_type, source_line_type, source_file_type, source_type
    public :: new_source_file, source_line, fail_at, note_at, place_text, line_text
 
-   integer, parameter :: code_lf = 10, code_cr = 13
+   integer, parameter :: code_tab = 9, code_lf = 10, code_cr = 13
+   integer, parameter :: longest_cause = 400     !! bytes of what is wrong, that quotes the deck
 
    !> A stretch of one deck line; line 0 means nowhere in particular.
    type :: place_type
@@ -31,6 +33,7 @@ module places
       character(len=:), allocatable :: content
       integer, allocatable :: first(:), last(:)   !! (n_lines)
       integer :: n_lines = 0
+      type(place_type) :: included   !! the *INCLUDE that names it; line 0: the deck itself
    end type source_file_type
 
    !> The text of the deck, kept so that any message can show the line it speaks of.
@@ -98,7 +101,7 @@ contains
       character(len=*), intent(in), optional :: cure    !! what would be right
       character(len=:), allocatable :: message
 
-      message = place_text(source, place, cause)
+      message = place_text(source, place, abridged(cause, longest_cause))
       if (present(cure)) message = message//new_line('a')//'  cure: '//cure
       call new_error(error, status_deck, message)
    end subroutine fail_at
@@ -114,6 +117,7 @@ contains
       if (is_known(source, place)) then
          note = source%files(place%file)%name//':'//to_text(place%line)//': '//remark
       end if
+      note = displayed(note)
    end function note_at
 
    !> "file:line".
@@ -139,17 +143,33 @@ contains
       if (.not. is_known(source, place)) return
       if (place%card > 0 .and. place%card /= place%line) then
          message = message//new_line('a')//'  card: '// &
-               printable(source_line(source, place%file, place%card))
+               printable(abridged(source_line(source, place%file, place%card), longest_cause))
       end if
       line = source_line(source, place%file, place%line)
       first = max(1, place%column)
       length = place%length
       if (place%column == 0) then
-         first = max(1, verify(line, ' '//achar(9)))
+         first = max(1, verify(line, ' '//achar(code_tab)))
          length = len_trim(line) - first + 1
       end if
-      message = message//new_line('a')//marked(line, first, max(1, length))
+      message = message//new_line('a')//marked(line, first, max(1, length))// &
+            way_of_includes(source, place%file)
    end function place_text
+
+   !> A line for each *INCLUDE on the way to a file.
+   pure function way_of_includes(source, file) result(lines)
+      type(source_type), intent(in) :: source
+      integer, intent(in) :: file
+      character(len=:), allocatable :: lines
+      type(place_type) :: place
+
+      lines = ''
+      place = source%files(file)%included
+      do while (is_known(source, place))
+         lines = lines//new_line('a')//'  included at '//line_text(source, place)
+         place = source%files(place%file)%included
+      end do
+   end function way_of_includes
 
    !> A line with carets below a stretch of it; of a very long line the part around the stretch.
    pure function marked(line, first, length) result(lines)
@@ -157,30 +177,32 @@ contains
       integer, intent(in) :: first, length
       character(len=:), allocatable :: lines
       integer, parameter :: longest = 160
-      integer :: start, finish
+      integer :: start, finish, i
 
       start = 1
       finish = len_trim(line)
       if (finish > longest) then
          start = max(1, first - longest/2)
          finish = min(finish, start + longest - 1)
+         do i = 1, 3                             ! no character is cut
+            if (start < first) start = start + merge(1, 0, continues(line, start))
+            if (finish < len(line)) finish = finish + merge(1, 0, continues(line, finish + 1))
+         end do
       end if
-      lines = '        '//printable(line(start:finish))//new_line('a')// &
-            '        '//repeat(' ', columns(line(start:min(first - 1, len(line)))))// &
-            repeat('^', max(1, columns(line(first:min(first + length - 1, finish)))))
+      lines = '        '//printable(line(start:finish))//new_line('a')//'        '// &
+            repeat(' ', display_width(printable(line(start:min(first - 1, len(line))))))// &
+            repeat('^', max(1, display_width(printable(line(first:min(first + length - 1, &
+            finish))))))
    end function marked
 
-   !> Columns that a text takes: the bytes that continue a UTF-8 character take none.
-   pure function columns(string) result(n)
-      character(len=*), intent(in) :: string
-      integer :: n
-      integer :: i
+   !> Whether a byte goes on with a character of UTF-8.
+   pure function continues(line, i) result(does)
+      character(len=*), intent(in) :: line
+      integer, intent(in) :: i
+      logical :: does
 
-      n = 0
-      do i = 1, len(string)
-         if (iachar(string(i:i)) < 128 .or. iachar(string(i:i)) > 191) n = n + 1
-      end do
-   end function columns
+      does = iachar(line(i:i)) >= 128 .and. iachar(line(i:i)) < 192
+   end function continues
 
    pure function is_known(source, place) result(known)
       type(source_type), intent(in) :: source
@@ -192,16 +214,17 @@ contains
       known = place%line <= source%files(place%file)%n_lines
    end function is_known
 
-   !> Control characters made blanks, so that a caret stays under what it points at.
+   !> A line of a deck as it is shown: a tab is one blank, what cannot be seen an escape.
    pure function printable(line) result(clean)
       character(len=*), intent(in) :: line
-      character(len=len(line)) :: clean
+      character(len=:), allocatable :: clean
       integer :: i
 
       clean = line
       do i = 1, len(line)
-         if (iachar(line(i:i)) < 32 .or. iachar(line(i:i)) == 127) clean(i:i) = ' '
+         if (iachar(line(i:i)) == code_tab) clean(i:i) = ' '
       end do
+      clean = displayed(clean)
    end function printable
 
 end module places

@@ -1,15 +1,13 @@
 !> Materials and sections: what an element is made of.
 module properties
    use kinds, only: wp
+   use name_map, only: name_length
    use places, only: place_type
    implicit none
    private
 
    public :: name_length, material_type, table_type, section_type
    public :: section_solid, section_spring, section_dashpot, section_mass, section_gap
-
-   !> Longest name of a set, material, surface, amplitude.
-   integer, parameter :: name_length = 80
 
    integer, parameter :: section_solid = 1
    integer, parameter :: section_spring = 2

@@ -10,6 +10,7 @@ module column_table
    use hdf5_file, only: hdf5_file_type, series_integer, series_real
    use kinds, only: int64, wp
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -279,12 +280,15 @@ contains
    !> Allocates the memory for the rows; the columns are fixed from here on.
    subroutine start(self)
       type(column_table_type), intent(inout) :: self
-      integer :: rows
+      integer :: rows, status
 
       rows = max(64, min(most_rows, most_values/max(1, self%reals%n)))
-      allocate (self%held_reals(rows, self%reals%n))
-      allocate (self%held_integers(rows, self%integers%n))
-      allocate (self%held_texts(rows, self%texts%n))
+      allocate (self%held_reals(rows, self%reals%n), stat=status)
+      call check_allocation(status)
+      allocate (self%held_integers(rows, self%integers%n), stat=status)
+      call check_allocation(status)
+      allocate (self%held_texts(rows, self%texts%n), stat=status)
+      call check_allocation(status)
       self%started = .true.
    end subroutine start
 
@@ -302,10 +306,15 @@ contains
       type(columns_type), intent(inout) :: columns
       character(len=*), intent(in) :: path   !! in the file
       character(len=256), allocatable :: longer(:)
+      integer :: status
 
-      if (.not. allocated(columns%paths)) allocate (columns%paths(8), columns%partial(8))
+      if (.not. allocated(columns%paths)) then
+         allocate (columns%paths(8), columns%partial(8), stat=status)
+         call check_allocation(status)
+      end if
       if (columns%n == size(columns%paths)) then
-         allocate (longer(2*columns%n))
+         allocate (longer(2*columns%n), stat=status)
+         call check_allocation(status)
          longer(:columns%n) = columns%paths
          call move_alloc(longer, columns%paths)
          columns%partial = [columns%partial, columns%partial]

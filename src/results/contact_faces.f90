@@ -1,6 +1,7 @@
 !> What contact rows mean for the faces they belong to: pressures at the nodes, total forces.
 module contact_faces
    use kinds, only: wp
+   use memory_shortage, only: check_allocation
    use model, only: model_type
    use mesh, only: axisymmetric, is_solid_kind, solid_plane
    use contact_pairs, only: contact_pair_list_type, contact_row_type
@@ -31,11 +32,12 @@ contains
       type(contact_face_type), allocatable, intent(out) :: faces(:)
       type(model_type), intent(in) :: model
       type(contact_pair_list_type), intent(in) :: list
-      integer :: p, pass, f, n
+      integer :: p, pass, f, n, status
 
       n = 0
       if (size(list%rows) > 0) n = sum(model%pairs%passes)
-      allocate (faces(n))
+      allocate (faces(n), stat=status)
+      call check_allocation(status)
       f = 0
       n = 0
       do p = 1, size(model%pairs)
@@ -59,7 +61,7 @@ contains
       type(contact_face_type), intent(inout) :: face
       type(model_type), intent(in) :: model
       integer, intent(in) :: p, pass
-      integer :: surface, e
+      integer :: surface, e, status
       real(wp), allocatable :: thickness(:)
       logical, allocatable :: around(:)
 
@@ -69,7 +71,8 @@ contains
       face%weighted = model%pairs(p)%weighted .and. model%pairs(p)%target > 0
       associate (edges => model%surfaces(surface)%edges, owner => &
             model%surfaces(surface)%edge_element)
-         allocate (thickness(size(edges, 2)), around(size(edges, 2)))
+         allocate (thickness(size(edges, 2)), around(size(edges, 2)), stat=status)
+         call check_allocation(status)
          thickness = 1.0_wp
          do e = 1, size(edges, 2)
             around(e) = is_solid_kind(model%elements%kind(owner(e))) .and. &
@@ -89,9 +92,10 @@ contains
    pure subroutine find_rows(face, rows)
       type(contact_face_type), intent(inout) :: face
       type(contact_row_type), intent(in) :: rows(:)
-      integer :: i
+      integer :: i, status
 
-      allocate (face%row(size(face%edges%nodes)), source=0)
+      allocate (face%row(size(face%edges%nodes)), source=0, stat=status)
+      call check_allocation(status)
       if (size(face%row) == 0) return
       do i = face%first, face%last
          face%row(face%edges%place(rows(i)%node)) = i

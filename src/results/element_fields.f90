@@ -4,6 +4,7 @@
 module element_fields
    use kinds, only: wp
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use element_interface, only: n_recovered, recovered_stress, recovered_strain, recovered_peeq, &
          recovered_energy
    use steps, only: n_quantities, quantity_s, quantity_e, quantity_ener, quantity_peeq
@@ -73,12 +74,14 @@ contains
       type(snapshot_type), intent(in) :: snapshot
       real(wp), allocatable :: cells(:, :), points(:, :)
       integer, allocatable :: n_meeting(:)
-      integer :: g, i
+      integer :: g, i, status
 
       if (all(self%cell == 0)) return
       associate (n_nodes => size(scene%system%structure%map%freedom, 2))
-         allocate (cells(n_recovered, self%n_elements), points(n_recovered, n_nodes))
-         allocate (n_meeting(n_nodes))
+         allocate (cells(n_recovered, self%n_elements), points(n_recovered, n_nodes), stat=status)
+         call check_allocation(status)
+         allocate (n_meeting(n_nodes), stat=status)
+         call check_allocation(status)
       end associate
       cells = 0.0_wp
       points = 0.0_wp

@@ -3,6 +3,7 @@ module grid_recorder
    use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
    use kinds, only: wp
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use model, only: model_type
    use mesh, only: is_solid_kind, solid_topology
    use steps, only: quantity_u, quantity_v, quantity_a, quantity_rf, quantity_cf, &
@@ -79,12 +80,13 @@ contains
    subroutine make_cells(model, types, connectivity, offsets)
       type(model_type), intent(in) :: model
       integer, allocatable, intent(out) :: types(:), connectivity(:), offsets(:)
-      integer :: e, n, n_nodes
+      integer :: e, n, n_nodes, status
 
       n = model%elements%n
       offsets = model%elements%first(:n + 1) - 1
       connectivity = model%elements%nodes(:offsets(n + 1)) - 1
-      allocate (types(n))
+      allocate (types(n), stat=status)
+      call check_allocation(status)
       do e = 1, n
          if (is_solid_kind(model%elements%kind(e))) then
             types(e) = solid_types(solid_topology(model%elements%kind(e)))

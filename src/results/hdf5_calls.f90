@@ -1,5 +1,5 @@
-!> The calls to the HDF5 library, with those of hdf5_opening and hdf5_changes the only ones: datasets,
-!> attributes and growing datasets by path. hdf5_file and hdf5_reader give them types and messages.
+!> The calls to the HDF5 library, with those of hdf5_opening and hdf5_changes the only ones:
+!> datasets, attributes and growing datasets by path. hdf5_file and hdf5_reader give them types.
 module hdf5_calls
    use, intrinsic :: iso_c_binding, only: c_char, c_loc, c_ptr
    use hdf5, only: h5_integer_kind, h5aclose_f, h5acreate_f, h5aexists_f, h5aopen_f, h5awrite_f, &
@@ -13,6 +13,7 @@ module hdf5_calls
          h5t_std_u8le, h5t_str_nullpad_f, h5tclose_f, h5tcopy_f, h5tset_size_f, h5tset_strpad_f, &
          hid_t, hsize_t, size_t
    use kinds, only: int64
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -25,6 +26,7 @@ module hdf5_calls
    type :: storage_type
       integer(hid_t) :: in_file = -1
       integer(hid_t) :: in_memory = -1
+      integer :: bytes = 8                       !! of a value in the file
    end type storage_type
 
    !> How a growing dataset is cut into chunks, each of which lies together in the file.
@@ -60,6 +62,7 @@ contains
    function byte_storage() result(storage)
       type(storage_type) :: storage
 
+      storage%bytes = 1
       storage%in_file = h5t_std_u8le
       storage%in_memory = h5t_std_u8le
    end function byte_storage
@@ -70,6 +73,7 @@ contains
       type(storage_type) :: storage
       integer :: status
 
+      storage%bytes = length
       call h5tcopy_f(h5t_fortran_s1, storage%in_memory, status)
       call h5tset_size_f(storage%in_memory, int(length, size_t), status)
       call h5tcopy_f(storage%in_memory, storage%in_file, status)
@@ -233,7 +237,7 @@ contains
       logical, intent(out) :: failed
       integer(hid_t) :: dataset, space, block
       integer(hsize_t), allocatable :: dims(:), start(:), count(:)
-      integer :: status(9), rank
+      integer :: status(9), rank, allocation
 
       failed = .false.
       if (n_values == 0) return
@@ -242,7 +246,8 @@ contains
       if (failed) return
       call shape_of(dataset, dims, failed)
       rank = size(dims)
-      allocate (start(rank), count(rank))
+      allocate (start(rank), count(rank), stat=allocation)
+      call check_allocation(allocation)
       start = 0
       start(rank) = dims(rank)
       count = dims
@@ -283,12 +288,13 @@ contains
       logical, intent(out) :: failed
       integer(hsize_t), allocatable :: most(:)
       integer(hid_t) :: space
-      integer :: status(4), rank
+      integer :: status(4), rank, allocation
 
       status = 0
       call h5dget_space_f(dataset, space, status(1))
       call h5sget_simple_extent_ndims_f(space, rank, status(2))
-      allocate (dims(max(0, rank)), most(max(0, rank)))
+      allocate (dims(max(0, rank)), most(max(0, rank)), stat=allocation)
+      call check_allocation(allocation)
       if (rank > 0) call h5sget_simple_extent_dims_f(space, dims, most, status(3))
       call h5sclose_f(space, status(4))
       failed = any(status < 0)

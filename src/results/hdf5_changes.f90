@@ -1,5 +1,5 @@
-!> Further calls to the HDF5 library: what a file holds, and changes of it. Datasets are overwritten,
-!> taken away, cut back to their first rows.
+!> Further calls to the HDF5 library: what a file holds, and changes of it. Datasets are written
+!> anew, taken away, cut back to their first rows.
 module hdf5_changes
    use, intrinsic :: iso_c_binding, only: c_ptr
    use hdf5, only: h5dclose_f, h5dget_type_f, h5dopen_f, h5dset_extent_f, h5dwrite_f, h5ldelete_f, &

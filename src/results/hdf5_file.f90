@@ -12,6 +12,7 @@ module hdf5_file
    use hdf5_output, only: hdf5_output_type
    use, intrinsic :: iso_fortran_env, only: int8
    use kinds, only: int64, wp
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -313,8 +314,10 @@ contains
    pure subroutine to_bytes(texts, bytes)
       character(len=*), intent(in) :: texts(:)
       character(kind=c_char), allocatable, target, intent(out) :: bytes(:)
+      integer :: status
 
-      allocate (bytes(max(1, len(texts))*size(texts)))
+      allocate (bytes(max(1, len(texts))*size(texts)), stat=status)
+      call check_allocation(status)
       bytes = c_char_' '
       if (len(texts) > 0) bytes = transfer(texts, bytes)
    end subroutine to_bytes

@@ -1,9 +1,9 @@
-!> An HDF5 file from its making to its closing, its groups, and datasets by their addresses; hdf5_file
-!> gives them types.
+!> An HDF5 file from its making to its closing, its groups, and datasets by their addresses;
+!> hdf5_file gives them types.
 !>
-!> A file that is reopened (`modify_claimed`) is made again by the same calls as a new one: groups and
-!> series that are there stay, datasets and attributes are written anew, in their old place where
-!> they fit.
+!> A file that is reopened (`modify_claimed`) is made again by the same calls as a new one: groups
+!> and series that are there stay, datasets and attributes are written anew, in their old place
+!> where they fit.
 !>
 !> It is written aside (part_file): what others see is what was published last, complete and
 !> closed. Before data are written, `reserve` has the disk set their space aside. So a full disk is
@@ -307,9 +307,21 @@ contains
          call self%renew(path, description, storage, dims, address, error)
          return
       end if
+      call self%reserve(room_of(storage, dims), error)
+      if (allocated(error)) return
       call put_dataset(self%id, path, description, storage, dims, address, failed)
       if (failed) call self%write_failure(path, error)
    end subroutine put_values
+
+   !> Bytes that a dataset takes at most, its header included.
+   pure function room_of(storage, dims) result(bytes)
+      type(storage_type), intent(in) :: storage
+      integer(hsize_t), intent(in) :: dims(:)
+      integer(int64) :: bytes
+      integer(int64), parameter :: header = 2048
+
+      bytes = header + storage%bytes*int(product(dims), int64)
+   end function room_of
 
    !> Writes a dataset in the place of one of this path, if there is one.
    subroutine renew_values(self, path, description, storage, dims, address, error)
@@ -324,6 +336,8 @@ contains
       call overwrite_dataset(self%id, path, storage, dims, address, done)
       if (done) return
       call self%remove(path, error)
+      if (allocated(error)) return
+      call self%reserve(room_of(storage, dims), error)
       if (allocated(error)) return
       call put_dataset(self%id, path, description, storage, dims, address, failed)
       if (failed) call self%write_failure(path, error)

@@ -7,6 +7,7 @@ module hdf5_reader
    use hdf5_opening, only: close_file, open_file
    use hdf5_changes, only: has_object, text_length
    use kinds, only: int64, wp
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -92,10 +93,12 @@ contains
       type(error_type), allocatable, intent(out) :: error   !! status_file
       integer, allocatable :: extents(:)
       logical :: failed
+      integer :: status
 
       call self%get_shape(path, extents, error)
       if (allocated(error)) return
-      allocate (values(product(extents)))
+      allocate (values(product(extents)), stat=status)
+      call check_allocation(status)
       if (size(values) == 0) return
       call get_dataset(self%id, path, real_storage(), c_loc(values), failed)
       if (failed) call read_error(self, path, error)
@@ -108,10 +111,12 @@ contains
       type(error_type), allocatable, intent(out) :: error   !! status_file
       integer, allocatable :: extents(:)
       logical :: failed
+      integer :: status
 
       call self%get_shape(path, extents, error)
       if (allocated(error)) return
-      allocate (values(product(extents)))
+      allocate (values(product(extents)), stat=status)
+      call check_allocation(status)
       if (size(values) == 0) return
       call get_dataset(self%id, path, integer_storage(), c_loc(values), failed)
       if (failed) call read_error(self, path, error)
@@ -124,10 +129,12 @@ contains
       type(error_type), allocatable, intent(out) :: error   !! status_file
       integer, allocatable :: extents(:)
       logical :: failed
+      integer :: status
 
       call self%get_shape(path, extents, error)
       if (allocated(error)) return
-      allocate (values(product(extents)))
+      allocate (values(product(extents)), stat=status)
+      call check_allocation(status)
       if (size(values) == 0) return
       call get_dataset(self%id, path, long_storage(), c_loc(values), failed)
       if (failed) call read_error(self, path, error)
@@ -140,14 +147,16 @@ contains
       character(len=:), allocatable, intent(out) :: text
       type(error_type), allocatable, intent(out) :: error   !! status_file
       character(kind=c_char), allocatable, target :: bytes(:)
-      integer :: length, i
+      integer :: length, i, status
       logical :: failed
 
       length = text_length(self%id, path)
       failed = length == 0
-      allocate (bytes(length))
+      allocate (bytes(length), stat=status)
+      call check_allocation(status)
       if (.not. failed) call get_texts(self%id, path, length, bytes, failed)
-      allocate (character(len=length) :: text)
+      allocate (character(len=length) :: text, stat=status)
+      call check_allocation(status)
       do i = 1, length
          text(i:i) = bytes(i)
       end do
@@ -164,10 +173,12 @@ contains
       character(kind=c_char), allocatable, target :: bytes(:)
       integer, allocatable :: extents(:)
       logical :: failed
+      integer :: status
 
       call self%get_shape(path, extents, error)
       if (allocated(error)) return
-      allocate (values(product(extents)), bytes(product(extents)*length))
+      allocate (values(product(extents)), bytes(product(extents)*length), stat=status)
+      call check_allocation(status)
       if (size(values) == 0) return
       call get_texts(self%id, path, length, bytes, failed)
       values = transfer(bytes, values)

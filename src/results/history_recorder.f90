@@ -4,6 +4,7 @@ module history_recorder
    use kinds, only: wp
    use errors, only: error_type
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    use model, only: model_type
    use steps, only: quantity_u, quantity_v, quantity_a, quantity_rf, quantity_s, quantity_e, &
          quantity_ener, quantity_cf, quantity_cdis, quantity_peeq, quantity_cpress, &
@@ -64,8 +65,10 @@ contains
       type(contact_pair_list_type), intent(in) :: list
       type(plan_type), intent(in) :: plan
       type(error_type), allocatable, intent(out) :: error
+      integer :: status
 
-      allocate (self%columns(64))
+      allocate (self%columns(64), stat=status)
+      call check_allocation(status)
       call self%table%create(file, '/history', &
             'what the deck asks to print, a row an increment', error)
       if (allocated(error)) return
@@ -206,12 +209,14 @@ contains
       character(len=*), intent(in) :: path, description
       type(error_type), allocatable, intent(out) :: error
       type(column_type), allocatable :: longer(:)
+      integer :: status
 
       call self%table%add_column(file, path, description, error, &
             partial=column%quantity == quantity_cdis)
       if (allocated(error)) return
       if (self%n == size(self%columns)) then
-         allocate (longer(2*self%n))
+         allocate (longer(2*self%n), stat=status)
+         call check_allocation(status)
          longer(:self%n) = self%columns
          call move_alloc(longer, self%columns)
       end if

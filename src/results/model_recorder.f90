@@ -2,6 +2,7 @@
 module model_recorder
    use kinds, only: wp
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use places, only: source_type
    use model, only: model_type
    use surfaces, only: surface_type, rigid_plane, rigid_circle
@@ -44,10 +45,12 @@ contains
       type(model_type), intent(in) :: model
       type(error_type), allocatable, intent(out) :: error
       real(wp), allocatable :: planes(:, :), circles(:, :)
-      integer :: i, n_planes, n_circles
+      integer :: i, n_planes, n_circles, status
 
-      allocate (planes(6, count(model%rigid_surfaces%kind == rigid_plane)))
-      allocate (circles(4, count(model%rigid_surfaces%kind == rigid_circle)))
+      allocate (planes(6, count(model%rigid_surfaces%kind == rigid_plane)), stat=status)
+      call check_allocation(status)
+      allocate (circles(4, count(model%rigid_surfaces%kind == rigid_circle)), stat=status)
+      call check_allocation(status)
       n_planes = 0
       n_circles = 0
       do i = 1, size(model%rigid_surfaces)
@@ -88,7 +91,7 @@ contains
    pure function deck_text(source) result(text)
       type(source_type), intent(in) :: source
       character(len=:), allocatable :: text
-      integer :: f, i, n, length
+      integer :: f, i, n, length, status
 
       n = 0
       do f = 1, source%n_files
@@ -96,7 +99,8 @@ contains
             n = n + source%files(f)%last(i) - source%files(f)%first(i) + 2
          end do
       end do
-      allocate (character(len=n) :: text)
+      allocate (character(len=n) :: text, stat=status)
+      call check_allocation(status)
       n = 0
       do f = 1, source%n_files
          do i = 1, source%files(f)%n_lines

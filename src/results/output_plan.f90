@@ -1,5 +1,6 @@
 !> Which results a deck asks for, over all its steps together.
 module output_plan
+   use memory_shortage, only: check_allocation
    use model, only: model_type
    use steps, only: request_type, n_quantities, procedure_frequency, request_node_print, &
          request_element_print, request_contact_print, request_energy_print, quantity_cf, &
@@ -26,10 +27,12 @@ contains
    subroutine new_plan(self, model)
       type(plan_type), intent(out) :: self
       type(model_type), intent(in) :: model
-      integer :: s, r
+      integer :: s, r, status
 
-      allocate (self%node_print(n_quantities, model%nodes%n))
-      allocate (self%element_print(n_quantities, model%elements%n))
+      allocate (self%node_print(n_quantities, model%nodes%n), stat=status)
+      call check_allocation(status)
+      allocate (self%element_print(n_quantities, model%elements%n), stat=status)
+      call check_allocation(status)
       self%node_print = .false.
       self%element_print = .false.
       self%modes_only = any(model%steps%procedure == procedure_frequency)

@@ -1,14 +1,15 @@
 !> The deck that a result file was computed from, as /model/deck and /restart/deck have it.
 module restart_deck
    use errors, only: error_type, new_error, status_file
+   use memory_shortage, only: check_allocation
    use places, only: source_type, new_source_file
    use hdf5_reader, only: hdf5_reader_type
    implicit none
    private
 
-   public :: read_restart_deck
+   public :: read_restart_deck, definition_length
 
-   integer, parameter :: name_length = 160
+   integer, parameter :: definition_length = 160
 
 contains
 
@@ -17,23 +18,24 @@ contains
       type(hdf5_reader_type), intent(in) :: reader   !! open
       character(len=*), intent(in) :: path           !! of the file, for messages
       type(source_type), intent(out) :: source
-      character(len=name_length), allocatable, intent(out) :: definitions(:)
+      character(len=definition_length), allocatable, intent(out) :: definitions(:)
       type(error_type), allocatable, intent(out) :: error   !! status_file
-      character(len=name_length), allocatable :: files(:)
+      character(len=definition_length), allocatable :: files(:)
       integer, allocatable :: n_lines(:)
       character(len=:), allocatable :: text
-      integer :: i, first, last
+      integer :: i, first, last, status
       logical :: sound
 
-      call reader%read_texts('/restart/deck/files', name_length, files, error)
+      call reader%read_texts('/restart/deck/files', definition_length, files, error)
       if (.not. allocated(error)) call reader%read_dataset('/restart/deck/lines', n_lines, error)
-      if (.not. allocated(error)) call reader%read_texts('/restart/deck/definitions', name_length, &
-            definitions, error)
+      if (.not. allocated(error)) call reader%read_texts('/restart/deck/definitions', &
+            definition_length, definitions, error)
       if (.not. allocated(error)) call reader%read_text('/model/deck', text, error)
       sound = .not. allocated(error)
       if (sound) sound = size(files) == size(n_lines)
       if (sound) then
-         allocate (source%files(size(files)))
+         allocate (source%files(size(files)), stat=status)
+         call check_allocation(status)
          source%n_files = size(files)
          last = 0
          do i = 1, size(files)
@@ -45,7 +47,8 @@ contains
       end if
       if (allocated(error)) deallocate (error)
       if (.not. sound) call new_error(error, status_file, 'the deck in '''//path//''' is damaged' &
-            //new_line('a')//'  cure: go on from a copy of the file, or run the deck from its start')
+            //new_line('a')//'  cure: go on from a copy of the file, or run the deck from its ' &
+            //'start')
    end subroutine read_restart_deck
 
    subroutine take_file(source, i, name, text)

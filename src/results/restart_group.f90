@@ -8,6 +8,7 @@ module restart_group
    use text, only: to_text
    use places, only: source_type
    use state_archive, only: archive_type, entry_type
+   use memory_shortage, only: check_allocation
    use hdf5_file, only: hdf5_file_type
    use hdf5_reader, only: hdf5_reader_type
    implicit none
@@ -31,6 +32,7 @@ module restart_group
       integer, allocatable :: n_lines(:)                          ! of them
       character(len=name_length), allocatable :: definitions(:)   ! NAME=VALUE of the command line
       character(len=name_length), allocatable :: entries(:)
+      integer(int64) :: bytes = 0                                 ! of their values
    end type restart_group_type
 
 contains
@@ -40,9 +42,10 @@ contains
       type(restart_group_type), intent(out) :: self
       type(source_type), intent(in) :: source
       character(len=*), intent(in) :: definitions(:)   !! NAME=VALUE
-      integer :: i
+      integer :: i, status
 
-      allocate (self%files(source%n_files), self%n_lines(source%n_files))
+      allocate (self%files(source%n_files), self%n_lines(source%n_files), stat=status)
+      call check_allocation(status)
       do i = 1, source%n_files
          self%files(i) = source%files(i)%name
          self%n_lines(i) = source%files(i)%n_lines
@@ -67,7 +70,8 @@ contains
             'parameters replaced by --define', error)
    end subroutine write_deck_names
 
-   !> Writes the archive in the place of the one before.
+   !> Writes the archive in the place of the one before; where the disk has no room for it, that one
+   !> stays whole.
    subroutine write_state(self, file, archive, error)
       type(restart_group_type), intent(inout) :: self
       type(hdf5_file_type), intent(inout) :: file
@@ -78,6 +82,8 @@ contains
       integer :: i
 
       if (.not. allocated(self%entries)) call begin_group(self, file, error)
+      if (allocated(error)) return
+      call make_room(self, file, archive, error)
       if (allocated(error)) return
       do i = 1, archive%n
          call write_entry(file, archive%entries(i), error)
@@ -95,6 +101,7 @@ contains
       type(restart_group_type), intent(inout) :: self
       type(hdf5_file_type), intent(inout) :: file
       type(error_type), allocatable, intent(out) :: error
+      integer :: status
 
       call remove_state(file, error)
       if (allocated(error)) return
@@ -104,8 +111,31 @@ contains
             'version of the meaning of the entries', error)
       if (allocated(error)) return
       call write_deck_names(self, file, error)
-      allocate (self%entries(0))
+      allocate (self%entries(0), stat=status)
+      call check_allocation(status)
    end subroutine begin_group
+
+   !> Room for all entries, where they are not those of the state before.
+   subroutine make_room(self, file, archive, error)
+      type(restart_group_type), intent(inout) :: self
+      type(hdf5_file_type), intent(inout) :: file
+      type(archive_type), intent(in) :: archive
+      type(error_type), allocatable, intent(out) :: error
+      integer(int64), parameter :: header = 2048
+      integer(int64) :: bytes
+      integer :: i
+
+      bytes = 0
+      do i = 1, archive%n
+         associate (entry => archive%entries(i))
+            if (allocated(entry%reals)) bytes = bytes + 8_int64*size(entry%reals, kind=int64)
+            if (allocated(entry%integers)) bytes = bytes + 8_int64*size(entry%integers, kind=int64)
+         end associate
+      end do
+      if (archive%n == size(self%entries) .and. bytes == self%bytes) return
+      call file%reserve(bytes + (archive%n + 10)*header, error)
+      if (.not. allocated(error)) self%bytes = bytes
+   end subroutine make_room
 
    subroutine write_entry(file, entry, error)
       type(hdf5_file_type), intent(inout) :: file

@@ -55,9 +55,9 @@ contains
       extents%frames = [results%grid%grid%count_frames(), results%grid%grid%count_fields()]
    end subroutine measure_results
 
-   !> Opens the results of an earlier run, which have been copied to the part file, and cuts them back
-   !> to go on behind a place in them. If they are not what the deck records now, `misfit` says so:
-   !> they cannot be gone on with then.
+   !> Opens the results of an earlier run, which have been copied to the part file, and cuts them
+   !> back to go on behind a place in them. If they are not what the deck records now, `misfit` says
+   !> so: they cannot be gone on with then.
    subroutine resume_results(self, place, model, scene, list, extents, misfit, error)
       type(result_file_type), intent(inout) :: self
       type(part_file_type), intent(in) :: place  !! taken over
@@ -81,7 +81,7 @@ contains
       if (any([present_extents%history, present_extents%energy, present_extents%events, &
             present_extents%frames] /= [extents%history, extents%energy, extents%events, &
             extents%frames])) misfit = 'they have columns or fields besides'
-      self%has_records = .true.
+      self%has_records = .not. allocated(misfit)
    end subroutine resume_results
 
    subroutine cut_results(self, extents, misfit, error)

@@ -1,6 +1,7 @@
 !> Values to record at one time, on nodes, elements and contact rows.
 module snapshot
    use kinds, only: wp
+   use memory_shortage, only: check_allocation
    use element_interface, only: n_recovered
    use reactions, only: reaction_forces
    use constraint_rows, only: row_gaps
@@ -39,6 +40,7 @@ contains
       type(scene_type), intent(inout) :: scene
       type(contact_motion_type), intent(in) :: motion
       logical, intent(in) :: with_reactions
+      integer :: status
 
       self%time = motion%motion%t
       self%u = motion%motion%d
@@ -49,7 +51,8 @@ contains
       self%gap = row_gaps(scene%rows, motion%motion)
       where (.not. scene%rows%facing) self%gap = not_a_number()
       self%pressure = 0.0_wp*self%lambda
-      allocate (self%force(3, scene%rows%n))
+      allocate (self%force(3, scene%rows%n), stat=status)
+      call check_allocation(status)
       self%force = 0.0_wp
       self%slip = motion%slip
       self%state = row_states(scene, motion)

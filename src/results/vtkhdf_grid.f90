@@ -11,6 +11,7 @@ module vtkhdf_grid
    use hdf5_file, only: hdf5_file_type, series_integer, series_real
    use kinds, only: int64, wp
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
@@ -71,13 +72,13 @@ contains
       type(error_type), allocatable, intent(out) :: error   !! status_file
       character(len=15), parameter :: counted(3) = [character(len=15) :: 'Points', 'Cells', &
             'ConnectivityIds']
-      integer :: counts(3), i
+      integer :: counts(3), i, status
 
       self%n_points = size(points, 2)
       self%n_cells = size(types)
-      allocate (self%fields(0))
-      allocate (self%times(max(1, min(most_frames, &
-            most_values/max(1, self%n_points, self%n_cells)))))
+      allocate (self%fields(0), self%times(max(1, min(most_frames, &
+            most_values/max(1, self%n_points, self%n_cells)))), stat=status)
+      call check_allocation(status)
       if (size(points, 1) /= 3 .or. size(offsets) /= self%n_cells + 1 &
             .or. offsets(size(offsets)) /= size(connectivity)) then
          call new_error(error, status_internal, 'the arrays of the grid do not fit together')
@@ -115,8 +116,8 @@ contains
       do i = 1, size(step_lists)
          if (allocated(error)) return
          call file%create_series(root//'/Steps/'//trim(step_lists(i)), series_integer, &
-               step_components(i), most_frames, 'the same in each frame: the mesh does not change', &
-               error)
+               step_components(i), most_frames, &
+               'the same in each frame: the mesh does not change', error)
       end do
    end subroutine create_steps
 
@@ -156,17 +157,20 @@ contains
       integer, intent(in) :: n_components, n_values
       integer, intent(out) :: field
       type(field_type), allocatable :: longer(:)
-      integer :: i
+      integer :: i, status
 
       field = size(self%fields) + 1
-      allocate (longer(field))
+      allocate (longer(field), stat=status)
+      call check_allocation(status)
       do i = 1, field - 1
          longer(i) = self%fields(i)
       end do
       longer(field)%data_path = root//'/'//place//'Data/'//name
       longer(field)%offset_path = root//'/Steps/'//place//'DataOffsets/'//name
       longer(field)%n = n_values
-      allocate (longer(field)%held(n_components, n_values*size(self%times)), source=0.0_wp)
+      allocate (longer(field)%held(n_components, n_values*size(self%times)), source=0.0_wp, &
+            stat=status)
+      call check_allocation(status)
       call move_alloc(longer, self%fields)
    end subroutine add_field
 

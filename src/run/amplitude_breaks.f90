@@ -1,6 +1,7 @@
 !> Times at which the tables of loads, prescribed motions and moving walls have their points.
 module amplitude_breaks
    use kinds, only: wp
+   use memory_shortage, only: check_allocation
    use histories, only: amplitude_type
    use amplitude_value, only: amplitude_start
    use scene_setup, only: simulation_type
@@ -19,9 +20,10 @@ contains
       type(simulation_type), intent(in) :: simulation
       real(wp), intent(in) :: span(2)            !! total times
       real(wp), allocatable, intent(out) :: breaks(:)
-      integer :: i
+      integer :: i, status
 
-      allocate (breaks(0))
+      allocate (breaks(0), stat=status)
+      call check_allocation(status)
       associate (loads => simulation%scene%system%loads%loads, &
             motions => simulation%scene%system%motions%motions, rows => simulation%scene%rows)
          do i = 1, size(loads)

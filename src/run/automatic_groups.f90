@@ -3,6 +3,7 @@
 module automatic_groups
    use kinds, only: wp, int64
    use errors, only: error_type
+   use memory_shortage, only: check_allocation
    use places, only: fail_at
    use model, only: model_type
    use mesh, only: scheme_implicit, scheme_explicit, scheme_automatic
@@ -41,7 +42,7 @@ contains
       real(wp), allocatable :: limits(:)
       integer, allocatable :: scheme(:)
       logical :: automatic(model%elements%n)
-      integer :: g
+      integer :: g, status
 
       automatic = .false.
       do g = 1, size(model%groups)
@@ -57,7 +58,8 @@ contains
                'add a *DYNAMIC, DIRECT step, or say IMPLICIT or EXPLICIT')
          return
       end if
-      allocate (limits(model%elements%n), scheme(model%elements%n))
+      allocate (limits(model%elements%n), scheme(model%elements%n), stat=status)
+      call check_allocation(status)
       call number_freely(model, structure)
       call find_own_limits(structure, limits)
       scheme = merge(scheme_explicit, scheme_implicit, partition%dt <= margin*limits)

@@ -2,8 +2,10 @@
 module command_line
    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
    use kinds, only: wp
-   use text, only: upper_case
+   use text, only: upper_case, to_text
+   use numbers, only: parse_integer, parse_real
    use errors, only: error_type, new_error, status_usage
+   use memory_shortage, only: check_allocation
    use deck_reader, only: definition_type
    implicit none
    private
@@ -17,6 +19,8 @@ module command_line
    integer, parameter :: command_help = 4
 
    character(len=*), parameter :: version_text = '0.1.0'
+
+   integer, parameter :: most_threads = 1024
 
    !> A command with its options.
    type :: command_type
@@ -42,7 +46,7 @@ contains
       text = 'carom '//version_text//': structural dynamics with impact'//nl//nl// &
             'usage: carom run DECK [-o OUT.h5] [--define NAME=VALUE]... [--threads N] [--quiet]' &
             //nl// &
-            '                      [--overwrite | --restart OLD.h5] [--memory SIZE]'//nl// &
+            '                      [--overwrite] [--restart OLD.h5] [--memory SIZE]'//nl// &
             '                      [--time-limit TIME]'//nl// &
             '       carom check DECK [--define NAME=VALUE]... [--memory SIZE]'//nl// &
             '       carom --version | --help'//nl//nl// &
@@ -53,7 +57,7 @@ contains
             '  --threads threads to work with (default: OMP_NUM_THREADS, else 1)'//nl// &
             '  --quiet  no progress on the terminal'//nl// &
             '  --overwrite  replaces results that exist'//nl// &
-            '  --restart  goes on from the state saved in OLD.h5'//nl// &
+            '  --restart  goes on from the state saved in OLD.h5, there or in OUT.h5'//nl// &
             '  --memory  what the run may take, as 500M or 12G (default: the machine''s)'//nl// &
             '  --time-limit  stops then with the state saved; seconds or HH:MM:SS'//nl//nl// &
             'exit status: 0 done, 1 usage, 2 deck, 3 file, 4 numerical, 5 interrupted, 6 internal'
@@ -64,9 +68,10 @@ contains
       type(command_type), intent(out) :: command
       type(error_type), allocatable, intent(out) :: error
       character(len=:), allocatable :: word
-      integer :: i
+      integer :: i, status
 
-      allocate (command%definitions(0))
+      allocate (command%definitions(0), stat=status)
+      call check_allocation(status)
       if (command_argument_count() == 0) return
       select case (argument(1))
       case ('run')
@@ -125,7 +130,8 @@ contains
       character(len=*), intent(in) :: option, value
       type(error_type), allocatable, intent(out) :: error
       type(definition_type) :: definition
-      integer :: split, status
+      character(len=:), allocatable :: cause
+      integer :: split
 
       select case (option)
       case ('-o')
@@ -146,11 +152,11 @@ contains
          definition%value = value(split + 1:)
          command%definitions = [command%definitions, definition]
       case default
-         if (verify(value, '0123456789') == 0) then
-            read (value, *, iostat=status) command%threads
-            if (status == 0 .and. command%threads > 0) return
-         end if
-         call usage_error(error, '--threads '''//value//''' is not a positive integer')
+         call parse_integer(value, command%threads, cause)
+         if (.not. allocated(cause) .and. command%threads > 0 .and. &
+               command%threads <= most_threads) return
+         call usage_error(error, '--threads '''//value//''' is not an integer from 1 to '// &
+               to_text(most_threads))
       end select
    end subroutine read_option
 
@@ -184,7 +190,7 @@ contains
          if (colon == 0) colon = len(value) - first + 2
          seconds = 60.0_wp*seconds + plain_number(value(first:first + colon - 2))
          first = first + colon
-         if (first > len(value)) exit
+         if (first > len(value) + 1) exit
       end do
       if (.not. seconds > 0.0_wp .or. first <= len(value)) call usage_error(error, &
             '--time-limit '''//value//''' is neither seconds nor HH:MM:SS')
@@ -194,13 +200,12 @@ contains
    function plain_number(word) result(number)
       character(len=*), intent(in) :: word
       real(wp) :: number
-      integer :: status
+      character(len=:), allocatable :: cause
 
-      number = ieee_value(number, ieee_quiet_nan)
-      if (len(word) == 0 .or. len(word) > 18) return
-      if (verify(word, '0123456789.') > 0 .or. verify(word, '.') == 0) return
-      read (word, *, iostat=status) number
-      if (status /= 0) number = ieee_value(number, ieee_quiet_nan)
+      call parse_real(word, number, cause)
+      if (allocated(cause) .or. verify(word, '0123456789.') > 0) then
+         number = ieee_value(number, ieee_quiet_nan)
+      end if
    end function plain_number
 
    !> Checks what belongs together and fills in the name of the result file.
@@ -217,8 +222,13 @@ contains
          call usage_error(error, 'no deck given')
          return
       end if
-      if (allocated(command%output)) then
+      if (command%kind == command_check .and. allocated(command%restart)) then
+         call usage_error(error, '--restart goes with run: a check starts nothing')
+      else if (allocated(command%output)) then
          call check_ending(command%output, error)
+         return
+      else if (allocated(command%restart)) then
+         command%output = command%restart
          return
       end if
       dot = index(command%deck, '.', back=.true.)
@@ -253,10 +263,11 @@ contains
    function argument(i) result(word)
       integer, intent(in) :: i
       character(len=:), allocatable :: word
-      integer :: length
+      integer :: length, status
 
       call get_command_argument(i, length=length)
-      allocate (character(len=length) :: word)
+      allocate (character(len=length) :: word, stat=status)
+      call check_allocation(status)
       call get_command_argument(i, word)
    end function argument
 

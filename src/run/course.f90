@@ -18,7 +18,7 @@ module course
    !> `plan` and `twins` a TOLERANCE.
    type :: course_type
       integer :: step = 0                        !! in force, 0 before the first one
-      logical :: entered = .false.               !! its start is recorded, of frequency steps all
+      logical :: entered = .false.               !! it has begun, its start is recorded
       integer :: increment = 0                   !! the last one taken, 0 at the start of the step
       real(wp) :: t_start = 0.0_wp               !! total time at the start of the step
       real(wp) :: step_time = 0.0_wp             !! reached

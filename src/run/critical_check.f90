@@ -4,6 +4,7 @@ module critical_check
    use kinds, only: wp
    use errors, only: error_type
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    use places, only: fail_at, note_at, source_line_type
    use model, only: model_type
    use mesh, only: scheme_implicit, scheme_explicit
@@ -51,8 +52,10 @@ contains
       type(source_line_type), allocatable, intent(out) :: notes(:)
       type(error_type), allocatable, intent(out) :: error
       character(len=:), allocatable :: culprit
+      integer :: status
 
-      allocate (notes(0))
+      allocate (notes(0), stat=status)
+      call check_allocation(status)
       associate (structure => scene%system%structure, limit => critical(scheme_explicit))
          if (limit%massless_freedom > 0) then
             call fail_at(error, model%source, step%procedure_place, &
@@ -168,10 +171,11 @@ contains
       type(source_line_type), allocatable, intent(inout) :: notes(:)
       character(len=*), intent(in) :: text
       type(source_line_type), allocatable :: longer(:)
-      integer :: n
+      integer :: n, status
 
       n = size(notes)
-      allocate (longer(n + 1))
+      allocate (longer(n + 1), stat=status)
+      call check_allocation(status)
       longer(:n) = notes
       longer(n + 1)%text = text
       call move_alloc(longer, notes)

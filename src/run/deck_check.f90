@@ -7,6 +7,7 @@ module deck_check
    use model, only: model_type
    use deck_reader, only: read_deck
    use memory_limit, only: memory_limit_type, find_limit
+   use memory_shortage, only: check_allocation
    use command_line, only: command_type
    use scene_setup, only: simulation_type, build_scene, begin_step
    use memory_estimate, only: memory_type, estimate_memory, add_step_memory, memory_text
@@ -97,12 +98,14 @@ contains
       logical, intent(in) :: aloud
       type(preview_type), intent(inout) :: preview   !! with its limit
       type(error_type), allocatable, intent(out) :: error
+      integer :: status
 
       call check_building(preview%limit, simulation%model, error)
       if (allocated(error)) return
       call build_scene(simulation, error)
       if (allocated(error)) return
-      allocate (preview%may_meet(size(simulation%contact%names)), source=.false.)
+      allocate (preview%may_meet(size(simulation%contact%names)), source=.false., stat=status)
+      call check_allocation(status)
       if (aloud) call report_model(simulation, log)
       call go_through_steps(simulation, log, aloud, preview, error)
       if (allocated(error)) then

@@ -15,7 +15,8 @@ module increment_end
    use increment_checks, only: check_finite, check_energies, check_interpolation, check_balance, &
          needs_energies
    use course, only: course_type, place_name
-   use run_output, only: output_type, publish_now_and_then
+   use run_output, only: output_type
+   use state_keeping, only: publish_increment
    implicit none
    private
 
@@ -34,12 +35,12 @@ contains
       call keep_watch(output%watch)
       call record(simulation, course, output, error)
       if (allocated(error)) return
-      call publish_now_and_then(output, simulation%scene%system%cost, error)
-      if (allocated(error)) return
       call next_increment(simulation%scene%system%cost)
       call check_end(simulation, course, error)
       if (allocated(error)) return
       ! all of the increment is recorded: from here a run can be taken up again
+      call publish_increment(simulation, course, output, error)
+      if (allocated(error)) return
       call stop_if_asked(simulation, course, output, error)
    end subroutine finish_increment
 
@@ -67,7 +68,7 @@ contains
    !> Energies, results, status and progress.
    subroutine record(simulation, course, output, error)
       type(simulation_type), intent(inout) :: simulation
-      type(course_type), intent(in) :: course
+      type(course_type), intent(inout) :: course
       type(output_type), intent(inout) :: output
       type(error_type), allocatable, intent(out) :: error
       integer :: n_events

@@ -6,16 +6,18 @@ module memory_estimate
    use memory_use, only: resident_memory
    use skyline_matrix, only: profile_type, profile_entries
    use panel_layout, only: panel_layout_type, new_panel_layout
-   use steps, only: step_type, procedure_static, procedure_dynamic, solver_mumps
+   use steps, only: step_type, procedure_static, procedure_dynamic, &
+         procedure_frequency, solver_mumps
    use surfaces, only: method_transformation, method_penalty
    use effective_system, only: most_kept
    use compliance_store, only: most_entries
+   use eigen_solver, only: condensed_below => small
    use output_plan, only: plan_type, new_plan
    use scene_setup, only: simulation_type
    implicit none
    private
 
-   public :: memory_type, item_length, estimate_memory, add_step_memory, memory_text, megabytes
+   public :: memory_type, item_length, state_bytes, estimate_memory, add_step_memory, memory_text, megabytes
    public :: item_model, item_matrices, item_state, item_frames, item_rows, item_contact
 
    integer, parameter :: item_length = 24
@@ -64,9 +66,26 @@ contains
                   + real_bytes*n_states_kept*(4.0_wp*n_freedoms + n_history)
          end if
       end associate
+      ! one is gathered before it is written
+      if (any(simulation%model%steps%restart_frequency > 0)) self%items(item_state) = &
+            self%items(item_state) + state_bytes(simulation)
       self%items(item_contact) = real_bytes*contact_entries(simulation)
       call add_output(self, simulation)
    end subroutine estimate_memory
+
+   !> What a state for a restart holds: d, v, a and the forces beside them, the history; twice where
+   !> the motion is computed twice.
+   pure real(wp) function state_bytes(simulation)
+      type(simulation_type), intent(in) :: simulation
+      real(wp), parameter :: n_arrays = 6.0_wp
+
+      associate (structure => simulation%scene%system%structure, steps => simulation%model%steps)
+         state_bytes = real_bytes*(n_arrays*real(structure%map%n_freedoms, wp) &
+               + real(structure%n_history, wp) + n_arrays*real(simulation%scene%rows%n, wp))
+         if (any(steps%procedure == procedure_dynamic .and. .not. steps%direct)) state_bytes = &
+               2.0_wp*state_bytes
+      end associate
+   end function state_bytes
 
    !> Arrays of the states with contact that stand beside the first: where an impact is sought they
    !> are those at both ends of a part of the step, at the impact and on trial.
@@ -151,12 +170,39 @@ contains
             entries = sparse_entries(system%profile%n)
          else
             entries = skyline_entries(system%profile)
-            if (system%structure%is_linear .and. profile_entries(system%profile) <= most_kept &
-                  .and. entries > real(system%profile%n, wp)) n = n + 3.0_wp
+            if (step%procedure == procedure_frequency) then
+               entries = mode_entries(simulation, step, entries)
+               n = 1.0_wp
+            else if (system%structure%is_linear .and. profile_entries(system%profile) <= most_kept &
+                  .and. entries > real(system%profile%n, wp)) then
+               n = n + 3.0_wp
+            end if
          end if
       end associate
       self%items(item_matrices) = max(self%items(item_matrices), real_bytes*n*entries)
    end subroutine add_step_memory
+
+   !> The most that free vibrations hold (linalg/eigen_solver): K, M and the factors with Lanczos'
+   !> basis or with the condensed matrices, or the matrices of the residuals with the modes.
+   function mode_entries(simulation, step, of_matrix) result(entries)
+      type(simulation_type), intent(in) :: simulation
+      type(step_type), intent(in) :: step
+      real(wp), intent(in) :: of_matrix          !! entries
+      real(wp) :: entries, n, n_massive, n_wanted, n_basis
+
+      associate (system => simulation%scene%system)
+         n = real(system%structure%map%n_freedoms, wp)
+         n_massive = real(count(.not. system%massless), wp)
+      end associate
+      n_wanted = min(real(step%n_modes, wp), n_massive)
+      if (2.0_wp*n_wanted <= n_massive .and. n_massive > real(condensed_below, wp)) then
+         n_basis = min(n_massive, max(2.0_wp*n_wanted + 5.0_wp, n_wanted + 22.0_wp))
+         entries = n*(n_basis + n_wanted) + n_basis**2
+      else
+         entries = 3.0_wp*n_massive**2
+      end if
+      entries = max(3.0_wp*of_matrix + entries, 5.0_wp*of_matrix + 2.0_wp*n*n_wanted)
+   end function mode_entries
 
    !> What is stored of a skyline, blocks filled up with zeros.
    function skyline_entries(profile) result(entries)

@@ -58,17 +58,19 @@ contains
    end function is_due
 
    !> Publishes all results and brings the log to its file.
-   subroutine publish_now(self, results, log, cost, error)
+   subroutine publish_now(self, results, log, cost, error, began)
       type(publishing_type), intent(inout) :: self
       type(result_file_type), intent(inout) :: results
       type(log_type), intent(in) :: log
       type(cost_type), intent(inout) :: cost
       type(error_type), allocatable, intent(out) :: error   !! status_file
+      real(wp), intent(in), optional :: began    !! when what is published was begun to be made
       real(wp) :: start
       integer :: outer
 
       call enter(cost, phase_output, outer, .true.)
       start = seconds_now()
+      if (present(began)) start = began
       call publish_results(results, error)
       self%last = seconds_now()
       self%price = self%last - start

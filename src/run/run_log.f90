@@ -3,12 +3,15 @@ module run_log
    use, intrinsic :: iso_fortran_env, only: output_unit
    use kinds, only: wp
    use errors, only: error_type
+   use state_archive, only: archive_type
+   use status_lines, only: read_status_lines
    use file_calls, only: look_at, look_at_open, is_same
    use text_file, only: text_file_type, open_text, write_line, check_text, close_text
    implicit none
    private
 
-   public :: log_type, open_log, check_log, close_log, say, note, write_status, has_line
+   public :: log_type, open_log, continue_log, check_log, close_log, say, note, write_status, &
+         has_line
 
    !> Where lines go. Without files (a mere check), to the terminal alone.
    type :: log_type
@@ -19,6 +22,8 @@ module run_log
       logical :: has_held = .false.         !! an increment whose status line is not written
       integer :: held_counts(4) = 0
       real(wp) :: held_times(3) = 0.0_wp
+   contains
+      procedure :: pass_state
    end type log_type
 
    !> So many increments of a step have a line each; of later ones one in 10 up to ten times as
@@ -42,11 +47,62 @@ contains
       call open_text(self%status, stem//'.sta', .false., error)
       if (allocated(error)) return
       self%has_files = .true.
+      call write_head(self)
+   end subroutine open_log
+
+   subroutine write_head(self)
+      type(log_type), intent(in) :: self
+
       call write_line(self%status, '# step  increment    step time      total time     '// &
             'increment      iterations  events')
       call write_line(self%status, '# a line an increment; beyond 10000 of a step one '// &
             'in 10, beyond 100000 one in 100, ..., with all iterations and events since the last')
-   end subroutine open_log
+   end subroutine write_head
+
+   !> Goes on with the files of an earlier run: behind the last line of the log if it is the same,
+   !> and behind the status line of the increment that is gone on from.
+   subroutine continue_log(self, stem, earlier, quiet, archive, error)
+      type(log_type), intent(out) :: self
+      character(len=*), intent(in) :: stem, earlier   !! of the log to be written, of that before
+      logical, intent(in) :: quiet
+      type(archive_type), intent(inout) :: archive    !! read: the state
+      type(error_type), allocatable, intent(out) :: error
+      character(len=:), allocatable :: lines
+      integer :: place(2)
+
+      self%terminal = .not. quiet
+      if (is_same(look_at_open(1), look_at(stem//'.log'))) self%terminal = .false.
+      call self%pass_state(archive)
+      call archive%pass('course/step', place(1))
+      call archive%pass('course/increment', place(2))
+      call read_status_lines(earlier//'.sta', place(1), place(2), .not. self%has_held, lines)
+      call open_text(self%lines, stem//'.log', stem == earlier, error)
+      if (allocated(error)) return
+      call open_text(self%status, stem//'.sta', .false., error)
+      if (allocated(error)) return
+      self%has_files = .true.
+      if (len(lines) == 0) then
+         call write_head(self)
+      else
+         call write_line(self%status, lines(:len(lines) - 1))
+      end if
+   end subroutine continue_log
+
+   !> What of the status lines is not written yet.
+   subroutine pass_state(self, archive)
+      class(log_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+      integer, allocatable :: counts(:)
+
+      counts = self%held_counts
+      call archive%enter('log')
+      call archive%pass('has_held', self%has_held)
+      call archive%pass('held_counts', counts)
+      call archive%pass_fixed('held_times', self%held_times)
+      call archive%leave()
+      if (.not. allocated(counts)) return
+      if (size(counts) == size(self%held_counts)) self%held_counts = counts
+   end subroutine pass_state
 
    !> Brings all lines to the files; an error if one of them cannot be written.
    subroutine check_log(self, error)

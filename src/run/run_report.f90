@@ -1,7 +1,9 @@
 !> What the log says of a model, its steps and a finished run.
 module run_report
    use kinds, only: wp, int64
+   use display, only: displayed
    use text, only: to_text, plural
+   use places, only: source_type
    use cost_account, only: n_phases, phase_names, phase_factor, phase_solve
    use mesh, only: scheme_implicit, scheme_explicit
    use steps, only: procedure_static, procedure_dynamic, procedure_frequency
@@ -34,6 +36,7 @@ contains
 
       call say(log, 'carom '//version_text)
       if (len_trim(simulation%model%heading) > 0) call say(log, trim(simulation%model%heading))
+      call report_files(simulation%model%source, log)
       call say(log, 'model: '//plural(simulation%model%nodes%n, 'node')//', ' &
             //plural(simulation%model%elements%n, 'element')//' in ' &
             //plural(size(simulation%scene%system%structure%groups), 'group')//', ' &
@@ -42,6 +45,24 @@ contains
       call report_pairs(simulation, log)
       if (simulation%partition%n_elements > 0) call report_partition(simulation%partition, log)
    end subroutine report_model
+
+   !> The files that were read, of very many the first.
+   subroutine report_files(source, log)
+      type(source_type), intent(in) :: source
+      type(log_type), intent(in) :: log
+      integer, parameter :: most = 100
+      integer :: i
+
+      do i = 1, min(source%n_files, most)
+         associate (file => source%files(i))
+            call say(log, trim(merge('included:', 'deck:    ', file%included%line > 0))//' ' &
+                  //displayed(file%name)//', '//plural(file%n_lines, 'line')//', ' &
+                  //plural(len(file%content), 'byte'))
+         end associate
+      end do
+      if (source%n_files > most) call say(log, 'included: ' &
+            //plural(source%n_files - most, 'further file'))
+   end subroutine report_files
 
    !> What SCHEME=AUTO chose, and what it saves.
    subroutine report_partition(partition, log)

@@ -3,6 +3,7 @@
 module scene_advice
    use kinds, only: wp
    use text, only: to_text, plural
+   use memory_shortage, only: check_allocation
    use mesh, only: scheme_implicit, scheme_explicit
    use steps, only: step_type, procedure_dynamic
    use critical_step, only: find_own_limits
@@ -111,12 +112,14 @@ contains
       real(wp), allocatable :: limits(:)
       logical, allocatable :: counted(:)
       real(wp) :: without
-      integer :: g, n, n_short
+      integer :: g, n, n_short, status
 
       if (simulation%partition%n_elements > 0) return
       if (step%dt < 0.5_wp*simulation%critical(scheme_explicit)%step) return
       associate (structure => simulation%scene%system%structure)
-         allocate (limits(simulation%model%elements%n), counted(simulation%model%elements%n))
+         allocate (limits(simulation%model%elements%n), counted(simulation%model%elements%n), &
+               stat=status)
+         call check_allocation(status)
          counted = .false.
          do g = 1, size(structure%groups)
             associate (group => structure%groups(g))

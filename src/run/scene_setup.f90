@@ -4,6 +4,7 @@ module scene_setup
    use kinds, only: wp, int64
    use errors, only: error_type
    use text, only: to_text, plural
+   use memory_shortage, only: check_allocation
    use places, only: fail_at, note_at, source_line_type
    use model, only: model_type
    use mesh, only: scheme_implicit, scheme_explicit
@@ -74,7 +75,7 @@ contains
       if (allocated(error)) return
       self%scene%impulse = [(0.0_wp, i=1, self%scene%rows%n)]
       self%scene%curvature = self%scene%impulse
-      allocate (self%has_met(size(self%contact%names)), source=.false.)
+      self%has_met = [(.false., i=1, size(self%contact%names))]
       call check_freedoms_named(self, error)
       if (allocated(error)) return
       call initial_motion(self, error)
@@ -106,13 +107,14 @@ contains
       type(simulation_type), intent(inout) :: self
       character(len=*), intent(in) :: remark
       type(source_line_type), allocatable :: longer(:)
-      integer :: i, n
+      integer :: i, n, status
 
       n = size(self%remarks)
       do i = 1, n
          if (self%remarks(i)%text == remark) return
       end do
-      allocate (longer(n + 1))
+      allocate (longer(n + 1), stat=status)
+      call check_allocation(status)
       longer(:n) = self%remarks
       longer(n + 1)%text = remark
       call move_alloc(longer, self%remarks)
@@ -339,9 +341,7 @@ contains
       integer :: f, i
       real(wp), allocatable :: m(:)
 
-      if (allocated(system%massless)) deallocate (system%massless)
-      allocate (system%massless(system%structure%map%n_eq))
-      system%massless = .true.
+      system%massless = [(.true., i=1, system%structure%map%n_eq)]
       m = diagonal_mass(system%structure)
       associate (map => system%structure%map)
          do f = 1, map%n_freedoms

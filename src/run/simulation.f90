@@ -1,19 +1,17 @@
 !> The run: deck, scene, files, the steps one after the other, and how it ended.
 module simulation
    use errors, only: error_type, status_file, status_interrupted
-   use text, only: to_text
    use stop_signals, only: catch_signals
    use file_calls, only: ignore_signals
-   use part_file, only: part_file_type, check_output, discard
+   use part_file, only: check_output
    use cost_account, only: start_clock, enter, leave, phase_read, phase_build, phase_output
    use steps, only: procedure_frequency
    use hdf5_file, only: hdf5_file_type
-   use result_file, only: open_results, close_results
+   use result_file, only: close_results
    use command_line, only: command_type
-   use output_files, only: claim_output, log_stem
    use publishing, only: start_publishing
-   use run_log, only: log_type, open_log, close_log, say
-   use stop_request, only: start_watch, start_looking, look_for_stop, stop_run, remove_stop_files
+   use run_log, only: log_type, close_log, say
+   use stop_request, only: start_watch, remove_stop_files
    use progress, only: start_progress, end_progress
    use scene_setup, only: simulation_type, initial_motion
    use frequency_run, only: run_frequency_step
@@ -23,6 +21,9 @@ module simulation
    use run_report, only: report_model, report_notes, report_summary
    use course, only: course_type, begin_course
    use run_output, only: output_type
+   use run_state, only: restore_state
+   use state_keeping, only: keep_before_step, keep_at_end, keep_if_interrupted
+   use restart_start, only: restart_type, read_restart, is_finished, open_outputs, begin_again
    use time_loop, only: run_step
    implicit none
    private
@@ -40,7 +41,8 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(simulation_type) :: simulation
       type(output_type) :: output
-      type(part_file_type) :: place
+      type(restart_type) :: restart
+      type(course_type) :: course
       type(advice_list_type) :: lessons
       type(error_type), allocatable :: close_error
       integer :: outer
@@ -51,28 +53,35 @@ contains
          call ignore_signals([broken_pipe, file_too_large])
          call start_publishing(output%publishing)
          call start_watch(output%watch, command%deck, command%time_limit, output%publishing%last)
-         call check_output(command%output, command%overwrite, error)
+         if (.not. allocated(command%restart)) call check_output(command%output, &
+               command%overwrite, error)
          if (allocated(error)) return
          call enter(cost, phase_read, outer)
          call read_model(simulation%model, command, output%preview, error)
+         if (.not. allocated(error)) call read_restart(restart, command, simulation%model, error)
          call leave(cost, outer)
          if (allocated(error)) return
+         if (is_finished(restart, simulation%model)) then
+            call say(output%log, 'nothing is left to do: '''//restart%path//''' is complete')
+            return
+         end if
          call enter(cost, phase_build, outer)
          call prepare(simulation, output%log, .false., output%preview, error)
          if (allocated(error)) return
          output%end_time = simulation%motion%motion%t
          call rebuild(simulation, error)
+         if (restart%wanted .and. .not. allocated(error)) call restore_state(simulation, course, &
+               restart%archive, error)
+         call leave(cost, outer)
+         if (allocated(error)) return
+         call enter(cost, phase_output, outer, .true.)
+         call open_outputs(restart, command, simulation, output, error)
          call leave(cost, outer)
       end associate
       if (allocated(error)) return
-      call claim_output(place, command, simulation%model%source, error)
-      if (allocated(error)) return
-      call open_log(output%log, log_stem(command%output), command%quiet, error)
-      if (allocated(error)) then
-         call discard(place)
-         return
-      end if
-      call run_steps(simulation, command, place, output, error)
+      call run_steps(simulation, command, restart, course, output, error)
+      call keep_if_interrupted(simulation, course, output, error)
+      call tell_how_to_go_on(command, error)
       call remove_stop_files(output%watch)
       call end_progress(output%progress)
       call close_results(output%results, simulation%scene, close_error)
@@ -103,6 +112,22 @@ contains
       error%message = error%message//new_line('a')//'  results: '//remark
    end subroutine merge_errors
 
+   !> The cure of an interruption.
+   subroutine tell_how_to_go_on(command, error)
+      type(command_type), intent(in) :: command
+      type(error_type), allocatable, intent(inout) :: error
+      integer :: i
+
+      if (.not. allocated(error)) return
+      if (error%status /= status_interrupted) return
+      error%message = error%message//new_line('a')//'  to go on: carom run '//command%deck &
+            //' --restart '//command%output
+      do i = 1, size(command%definitions)
+         error%message = error%message//' --define '//command%definitions(i)%name//'=' &
+               //command%definitions(i)%value
+      end do
+   end subroutine tell_how_to_go_on
+
    !> The last line of the log: how the run ended; what a message says beyond its first line, as the
    !> cure, goes before.
    subroutine report_end(log, error)
@@ -128,52 +153,39 @@ contains
       call initial_motion(simulation, error)
    end subroutine rebuild
 
-   subroutine run_steps(simulation, command, place, output, error)
+   !> All steps, or those that a restart has left.
+   subroutine run_steps(simulation, command, restart, course, output, error)
       type(simulation_type), intent(inout) :: simulation
       type(command_type), intent(in) :: command
-      type(part_file_type), intent(in) :: place  !! of the results
+      type(restart_type), intent(inout) :: restart
+      type(course_type), intent(inout) :: course
       type(output_type), intent(inout) :: output
       type(error_type), allocatable, intent(out) :: error
-      type(course_type) :: course
-      integer :: i, outer
+      integer :: i
 
       call report_model(simulation, output%log)
       call report_preview(output%preview, simulation, .false., output%log)
       call report_notes(simulation, output%log)
-      call enter(simulation%scene%system%cost, phase_output, outer, .true.)
-      call open_results(output%results, place, command%output, simulation%model, &
-            simulation%scene, simulation%contact, error)
-      call leave(simulation%scene%system%cost, outer)
-      if (allocated(error)) return
+      if (restart%wanted) then
+         call simulation%scene%system%cost%pass_times(restart%archive)
+         call begin_again(restart, simulation, course, output, error)
+         if (allocated(error)) return
+      end if
       call start_progress(output%progress, command%quiet)
       do i = max(1, course%step), size(simulation%model%steps)
+         if (simulation%model%steps(i)%procedure == procedure_frequency) then
+            call keep_before_step(simulation, course, output, error)
+            if (allocated(error)) return
+         end if
          if (i > course%step) call begin_course(course, i, simulation%motion%motion%t)
          if (simulation%model%steps(i)%procedure == procedure_frequency) then
-            call do_frequency_step(simulation, course, output, error)
+            call run_frequency_step(simulation, i, output%results, output%log, error)
          else
             call run_step(simulation, course, output, error)
          end if
          if (allocated(error)) return
       end do
+      call keep_at_end(simulation, course, output, error)
    end subroutine run_steps
-
-   !> A frequency step, which is finished once it has begun.
-   subroutine do_frequency_step(simulation, course, output, error)
-      type(simulation_type), intent(inout) :: simulation
-      type(course_type), intent(inout) :: course
-      type(output_type), intent(inout) :: output
-      type(error_type), allocatable, intent(out) :: error
-      logical :: asked
-
-      if (course%entered) return
-      call run_frequency_step(simulation, course%step, output%results, output%log, error)
-      if (allocated(error)) return
-      course%entered = .true.
-      if (course%step == size(simulation%model%steps)) return
-      call start_looking(output%watch)
-      call look_for_stop(output%watch, asked)
-      if (asked) call stop_run(output%watch, 'after step '//to_text(course%step), &
-            simulation%motion%motion%t, error)
-   end subroutine do_frequency_step
 
 end module simulation

@@ -3,7 +3,7 @@
     python3 fuzz.py CAROM [--count N] [--seed S] [--jobs J] [--keep FOLDER] [--only I]
 
 Mutant I of seed S is always the same. Each must end with status 0, 2, 3 or 4 within bounds of time
-and memory, without a signal or an error of the language or a sanitizer, with a message that names a
+and memory (or with 5 in time, where it was asked to stop after 20 s), without a signal or an error of the language or a sanitizer, with a message that names a
 place for status 2, and with numbers for status 0. Failing mutants are kept with the command that repeats them.
 """
 import argparse
@@ -20,7 +20,7 @@ import numpy as np
 import spoil
 import vary
 from fuzz_deck import ROOT, count_increments, flattened, limit_increments, read_decks, shorten
-from judge import judge
+from judge import judge, limit_files
 from scenes import make_scene
 
 MOST_INCREMENTS = 3000      # of a mutant, by its numbers
@@ -163,7 +163,7 @@ class Campaign:
         for kind, count in sorted(self.counts.items()):
             print(f"{kind:>14} {count:7d}")
         print(f"{self.done} mutants of {len(self.decks)} decks, {len(self.failures)} failed, "
-              f"{len(self.late)} still running well at {self.late[:20]}, {seconds:.0f} s")
+              f"{len(self.late)} stopped as too long {self.late[:20]}, {seconds:.0f} s")
 
 
 def main():
@@ -176,6 +176,7 @@ def main():
     parser.add_argument("--keep", help="folder for the mutants that fail or run long")
     parser.add_argument("--only", type=int, help="the number of one mutant")
     options = parser.parse_args()
+    limit_files()
     campaign = Campaign(options)
     campaign.run(range(options.count) if options.only is None else [options.only])
     sys.exit(1 if campaign.failures else 0)

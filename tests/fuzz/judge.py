@@ -10,9 +10,11 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-CPU_LIMIT = 20.0            # seconds of processor time, of the sanitize build
-WALL_FACTOR = 15            # a process that waits for others longer than so many times that hangs
-MEMORY_LIMIT = 1500         # MB
+TIME_LIMIT = 20             # seconds after which a run is asked to stop: it may well be a long one
+CPU_LIMIT = 40.0            # seconds of processor time after which it hangs
+WALL_LIMIT = 600.0          # likewise, if it only waits
+MEMORY_LIMIT = 1500         # MB with what sanitizers need; the program is given half of it
+FILE_LIMIT = 2**31          # bytes
 SANITIZERS = {
     "ASAN_OPTIONS": f"hard_rss_limit_mb={MEMORY_LIMIT}:allocator_may_return_null=1:"
                     f"max_allocation_size_mb={MEMORY_LIMIT}:quarantine_size_mb=16:exitcode=99",
@@ -28,7 +30,7 @@ SIGNS = re.compile(r"Fortran runtime error|AddressSanitizer:(?! failed to alloca
 PLACE = re.compile(r"^error: [^\n]*?:\d+: \S")
 # Columns in which NaN says that there is no value (README, the result file)
 NO_VALUE = ("CDIS",)
-GOOD_STATUS = {0: "done", 2: "deck", 3: "file", 4: "numbers"}
+KINDS = {0: "done", 2: "deck", 3: "file", 4: "numbers", 5: "long"}
 
 
 class Verdict:
@@ -41,18 +43,20 @@ class Verdict:
     @property
     def kind(self):
         """The status as a word, or 'long' or 'failed'."""
-        return "failed" if self.faults else GOOD_STATUS.get(self.status, "long")
+        return "failed" if self.faults else KINDS[self.status]
 
 
 def start(words, folder, output):
-    """Starts the program with bounds for those that no sanitizer watches."""
-    def bound():
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-        resource.setrlimit(resource.RLIMIT_FSIZE, (2**31, 2**31))
-
+    """Starts the program on one thread."""
     environment = {**os.environ, **SANITIZERS, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
     return subprocess.Popen(words, cwd=folder, stdin=subprocess.DEVNULL, stdout=output,
-                            stderr=subprocess.STDOUT, env=environment, preexec_fn=bound)
+                            stderr=subprocess.STDOUT, env=environment)
+
+
+def limit_files():
+    """No core files and no huge ones, from this process and those that it starts."""
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    resource.setrlimit(resource.RLIMIT_FSIZE, (FILE_LIMIT, FILE_LIMIT))
 
 
 def cpu_seconds(pid):
@@ -64,70 +68,58 @@ def cpu_seconds(pid):
     return (int(fields[11]) + int(fields[12]))/os.sysconf("SC_CLK_TCK")
 
 
-def progress_mark(folder):
-    """Grows while a run gets on."""
-    return sum(path.stat().st_size for path in folder.glob("out.*") if path.suffix in (".sta", ".log"))
-
-
-def wait_for(process, folder):
-    """Waits for the end within the bounds: status (None if killed), usage, whether it got on."""
-    begun, half = time.monotonic(), None
-    pause = 0.002
+def wait_for(process):
+    """Waits for the end within the bounds: status (None if killed) and usage."""
+    begun, pause = time.monotonic(), 0.002
     while True:
         pid, status, usage = os.wait4(process.pid, os.WNOHANG)
         if pid:
             process.returncode = os.waitstatus_to_exitcode(status)
-            return process.returncode, usage, True
+            return process.returncode, usage
         time.sleep(pause)
         pause = min(0.02, 1.3*pause)
         wall = time.monotonic() - begun
-        if wall < CPU_LIMIT/2:
-            continue
-        used = cpu_seconds(process.pid)
-        if half is None and used > CPU_LIMIT/2:
-            half = progress_mark(folder)
-        if used > CPU_LIMIT or wall > WALL_FACTOR*CPU_LIMIT:
-            moved = half is not None and progress_mark(folder) > half
+        if wall > WALL_LIMIT or (wall > CPU_LIMIT and cpu_seconds(process.pid) > CPU_LIMIT):
             process.send_signal(signal.SIGKILL)
             _, _, usage = os.wait4(process.pid, 0)
             process.returncode = -signal.SIGKILL
-            return None, usage, moved
+            return None, usage
 
 
 def judge(carom, folder, command, words=()):
     """Runs `carom run` or `carom check` on folder/deck.inp and judges it."""
     folder = Path(folder)
-    line = [str(carom), command, "deck.inp", *words]
+    line = [str(carom), command, "deck.inp", "--memory", f"{MEMORY_LIMIT//2}M", *words]
     if command == "run":
-        line += ["-o", "out.h5", "--quiet"]
+        line += ["-o", "out.h5", "--quiet", "--time-limit", str(TIME_LIMIT)]
     with open(folder / "terminal", "w+b") as output:
         process = start(line, folder, output)
-        status, usage, moved = wait_for(process, folder)
+        status, usage = wait_for(process)
         output.seek(0)
         text = output.read(200000).decode("utf-8", "replace")
-    faults = find_faults(folder, command, status, moved, text)
+    faults = find_faults(folder, command, status, text)
     megabytes = usage.ru_maxrss/1024
     if megabytes > MEMORY_LIMIT:
         faults.append(f"{megabytes:.0f} MB of memory")
     return Verdict(status, faults, text, usage.ru_utime + usage.ru_stime, megabytes)
 
 
-def find_faults(folder, command, status, moved, text):
+def find_faults(folder, command, status, text):
     """What is wrong, in words."""
     faults = []
     if SIGNS.search(text):
         sign = SIGNS.search(text)
         faults.append("output: " + text[sign.start():sign.start() + 160].splitlines()[0])
     if status is None:
-        return faults if moved else [*faults, "hangs"]
-    if status not in GOOD_STATUS:
+        return [*faults, "hangs"]
+    if status not in KINDS or (status == 5 and command == "check"):
         return [*faults, f"status {status}"]
     if status != 0:
         faults += find_faults_of_message(status, text)
-    if status == 2:
-        left = [path.name for path in folder.glob("out*")]
-        faults += [f"left behind: {', '.join(left)}"] if left else []
-    if command == "run" and status in (0, 4):
+    finished = ("out.h5", "out.log", "out.sta") if command == "run" and status != 2 else ()
+    left = [path.name for path in folder.glob("out*") if path.name not in finished]
+    faults += [f"left behind: {', '.join(left)}"] if left else []
+    if command == "run" and status in (0, 4, 5):
         faults += find_faults_of_results(folder, status)
     return faults
 

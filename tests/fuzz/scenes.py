@@ -122,8 +122,10 @@ def make_points(scene):
             scene.element(kind, [a, b], *(["*SPRING"] if "SPRING" in kind else ["*DASHPOT"]),
                           *([] if kind == "SPRINGA" else ["1, 1"]), "10")
     scene.add("*SURFACE, NAME=TIP, TYPE=NODE", str(nodes[0]),
-              "*RIGID SURFACE, NAME=WALL, TYPE=PLANE", "-0.2, 0, 0", "1, 0, 0")
+              *wall(rng, "-0.2, 0, 0", "1, 0, 0"))
     add_pair(scene, "TIP", "WALL")
+    if len(nodes) > 2 and rng.random() < 0.2:
+        scene.add("*EQUATION", "2", f"{nodes[1]}, 1, 1, {nodes[2]}, 1, {pick(rng, ['-1', '2'])}")
     scene.add("*INITIAL CONDITIONS, TYPE=VELOCITY", f"{nodes[0]}, 1, -1")
 
 
@@ -134,10 +136,11 @@ def make_blocks(scene):
     lower = scene.block(2.0 if plane == "CAX" else 0.0, 0.0, plane)
     target = pick(rng, ["WALL", "WALL", "CIRCLE", "BLOCK", "BLOCK", "NONE"])
     if target == "WALL":
-        scene.add("*RIGID SURFACE, NAME=WALL, TYPE=PLANE", "0, -0.01, 0", "0, 1, 0")
+        scene.add(*wall(rng, "0, -0.01, 0", "0, 1, 0"))
         add_pair(scene, f"{lower}S", "WALL")
     elif target == "CIRCLE":
-        scene.add("*RIGID SURFACE, NAME=WALL, TYPE=CIRCLE", "0.3, -5.01", "5")
+        scene.add("*RIGID SURFACE, NAME=WALL, TYPE=CIRCLE",
+                  *pick(rng, [["0.3, -5.01", "5"], ["0.5, 0.5", "-8"], ["0.3, -0.11", "0.1"]]))
         add_pair(scene, f"{lower}S", "WALL")
     elif target == "BLOCK":
         upper = scene.block((2.0 if plane == "CAX" else 0.0) + pick(rng, [0.0, 0.2, -0.3]),
@@ -148,7 +151,16 @@ def make_blocks(scene):
         scene.add("*BOUNDARY", *pick(rng, [["1, 1, 2", "2, 2"], [f"{lower}N, 1"], ["1, 1, 2"]]))
     scene.add("*INITIAL CONDITIONS, TYPE=VELOCITY", f"{lower}N, 2, "
               + pick(rng, ["-1", "1", "-100", "0"]))
-    scene.loads += ["*DLOAD", f"{lower}, " + pick(rng, ["P3, 1", "BY, -10", "GRAV, 9.81, 0, -1, 0"])]
+    scene.loads += ["*DLOAD" + pick(rng, ["", ", AMPLITUDE=AMP"]),
+                    f"{lower}, " + pick(rng, ["P3, 1", "BY, -10", "GRAV, 9.81, 0, -1, 0"])]
+
+
+def wall(rng, point, normal):
+    """A plane, now and then one that moves."""
+    if rng.random() < 0.8:
+        return ["*RIGID SURFACE, NAME=WALL, TYPE=PLANE", point, normal]
+    return ["*RIGID SURFACE, NAME=WALL, TYPE=PLANE, AMPLITUDE=AMP", point, normal,
+            f"{normal}, {pick(rng, ['0.05', '-0.05', '2'])}"]
 
 
 def add_pair(scene, slave, master):

@@ -1,0 +1,124 @@
+!> Keeps the state of a run in its results, for --restart to go on from.
+module state_keeping
+   use kinds, only: wp
+   use errors, only: error_type, status_interrupted
+   use clock, only: seconds_now
+   use cost_account, only: enter, leave, phase_output
+   use state_archive, only: archive_type
+   use restart_group, only: write_state, remove_state
+   use result_file, only: flush_results
+   use result_extents, only: extents_type, measure_results
+   use publishing, only: is_due, publish_now
+   use stop_request, only: start_looking
+   use stop_request, only: start_looking
+   use scene_setup, only: simulation_type
+   use course, only: course_type
+   use run_state, only: collect_state
+   use run_output, only: output_type, publish_now_and_then
+   implicit none
+   private
+
+   public :: keep_restart_state, publish_increment, keep_before_step, keep_at_end, &
+         keep_if_interrupted
+
+contains
+
+   !> Writes the state into the results, where it is published with them.
+   subroutine keep_restart_state(simulation, course, output, error)
+      type(simulation_type), intent(inout) :: simulation   !! as it was
+      type(course_type), intent(inout) :: course           !! as it was
+      type(output_type), intent(inout) :: output
+      type(error_type), allocatable, intent(out) :: error
+      type(archive_type) :: archive
+      type(extents_type) :: extents
+      integer :: outer
+
+      if (.not. course%entered) return
+      associate (cost => simulation%scene%system%cost)
+         call enter(cost, phase_output, outer, .true.)
+         call flush_results(output%results, error)
+         if (.not. allocated(error)) then
+            call collect_state(simulation, course, archive)
+            call measure_results(extents, output%results)
+            call extents%pass_state(archive)
+            call output%log%pass_state(archive)
+            call cost%pass_times(archive)
+            call write_state(output%results%restart, output%results%file, archive, error)
+         end if
+         call leave(cost, outer)
+      end associate
+      output%state_due = .false.
+   end subroutine keep_restart_state
+
+   !> After an increment: keeps the state if *RESTART asks for it, and lets others see the results
+   !> now and then. A state that is due is put off where keeping all would take long.
+   subroutine publish_increment(simulation, course, output, error)
+      type(simulation_type), intent(inout) :: simulation
+      type(course_type), intent(inout) :: course
+      type(output_type), intent(inout) :: output
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: start
+
+      associate (step => simulation%model%steps(course%step), cost => simulation%scene%system%cost)
+         if (step%restart_frequency > 0) then
+            output%state_due = output%state_due .or. course%step_time >= step%duration &
+                  .or. modulo(course%increment, step%restart_frequency) == 0
+         end if
+         if (output%state_due) then
+            if (.not. output%watch%pace%fresh) return
+            if (.not. output%watch%pace%fresh) return
+            if (.not. is_due(output%publishing, 0.0_wp)) return
+            start = seconds_now()
+            call keep_restart_state(simulation, course, output, error)
+            if (.not. allocated(error)) call publish_now(output%publishing, output%results, &
+                  output%log, cost, error, start)
+            output%watch%saving = output%publishing%price
+            call start_looking(output%watch)
+            output%watch%saving = output%publishing%price
+            call start_looking(output%watch)
+         else
+            call publish_now_and_then(output, cost, error)
+         end if
+      end associate
+   end subroutine publish_increment
+
+   !> A run that is interrupted always keeps its state.
+   subroutine keep_if_interrupted(simulation, course, output, error)
+      type(simulation_type), intent(inout) :: simulation
+      type(course_type), intent(inout) :: course
+      type(output_type), intent(inout) :: output
+      type(error_type), allocatable, intent(inout) :: error   !! why the run ends, if it fails
+      type(error_type), allocatable :: write_error
+
+      if (.not. allocated(error)) return
+      if (error%status /= status_interrupted) return
+      call keep_restart_state(simulation, course, output, write_error)
+      if (allocated(write_error)) call move_alloc(write_error, error)
+   end subroutine keep_if_interrupted
+
+   !> What was put off, at the end of a step behind which no state can be kept.
+   subroutine keep_before_step(simulation, course, output, error)
+      type(simulation_type), intent(inout) :: simulation
+      type(course_type), intent(inout) :: course
+      type(output_type), intent(inout) :: output
+      type(error_type), allocatable, intent(out) :: error
+
+      if (output%state_due) call keep_restart_state(simulation, course, output, error)
+   end subroutine keep_before_step
+
+   !> At the end of the run: the last state, if *RESTART asks for it; else what is left of another
+   !> run goes, which would be of no use.
+   subroutine keep_at_end(simulation, course, output, error)
+      type(simulation_type), intent(inout) :: simulation
+      type(course_type), intent(inout) :: course
+      type(output_type), intent(inout) :: output
+      type(error_type), allocatable, intent(out) :: error
+
+      if (any(simulation%model%steps%restart_frequency > 0)) then
+         if (output%state_due) call keep_restart_state(simulation, course, output, error)
+      else
+         call remove_state(output%results%file, error)
+      end if
+   end subroutine keep_at_end
+
+end module state_keeping
