@@ -16,7 +16,8 @@ module scene_features
    use increment_count, only: count_increments
    use structure, only: is_explicit
    use element_cost, only: iterations, group_seconds, pass_seconds
-   use memory_estimate, only: memory_type, item_frames, item_rows, item_contact, item_matrices
+   use memory_estimate, only: memory_type, item_frames, item_rows, item_contact, item_matrices, &
+         state_bytes
    use output_cost, only: output_cost_type, new_output_cost, bytes_text
    implicit none
    private
@@ -26,7 +27,8 @@ module scene_features
          kind_rest
 
    integer, parameter :: kind_elements = 1, kind_solution = 2, kind_supports = 3, &
-         kind_contact = 4, kind_history = 5, kind_frames = 6, kind_energies = 7, kind_rest = 8
+         kind_contact = 4, kind_history = 5, kind_frames = 6, kind_energies = 7, kind_rest = 8, &
+         kind_states = 9
    integer, parameter :: most_features = 64
 
    !> Seconds on a processor of today, each found by a run that does little else.
@@ -316,6 +318,7 @@ contains
                //plural(int(min(output%n_frames, 2.0e9_wp)), 'frame')//' of ' &
                //bytes_text(output%frame_bytes), output%frame_seconds*output%n_frames &
                /max(1.0_wp, self%increments))
+         call add_states(self, simulation)
          if (.not. output%energies) return
          seconds = energy_passes(simulation)*pass_seconds(simulation%scene%system%structure)
          call add(self, kind_energies, 'energies', 'of the whole' &
@@ -323,6 +326,19 @@ contains
                //every(output%energy_every), seconds/output%energy_every)
       end associate
    end subroutine add_output
+
+   !> States for a restart. Their writing is put off where it would take more than a twentieth of
+   !> the time.
+   subroutine add_states(self, simulation)
+      type(feature_list_type), intent(inout) :: self
+      type(simulation_type), intent(in) :: simulation
+
+      associate (step => simulation%model%steps(self%step))
+         if (step%restart_frequency == 0) return
+         call add(self, kind_states, 'restart', 'states of '//bytes_text(state_bytes(simulation)) &
+               //every(real(step%restart_frequency, wp)), 0.0_wp)
+      end associate
+   end subroutine add_states
 
    !> Passes over the elements for their energies: explicit steps find them on their way; those of
    !> several groups are found by themselves.

@@ -1,7 +1,6 @@
 !> The run: deck, scene, files, the steps one after the other, and how it ended.
 module simulation
    use errors, only: error_type, status_file, status_interrupted
-   use text, only: to_text
    use stop_signals, only: catch_signals
    use file_calls, only: ignore_signals
    use part_file, only: check_output
@@ -12,7 +11,7 @@ module simulation
    use command_line, only: command_type
    use publishing, only: start_publishing
    use run_log, only: log_type, close_log, say
-   use stop_request, only: start_watch, start_looking, look_for_stop, stop_run, remove_stop_files
+   use stop_request, only: start_watch, remove_stop_files
    use progress, only: start_progress, end_progress
    use scene_setup, only: simulation_type, initial_motion
    use frequency_run, only: run_frequency_step
@@ -180,7 +179,7 @@ contains
          end if
          if (i > course%step) call begin_course(course, i, simulation%motion%motion%t)
          if (simulation%model%steps(i)%procedure == procedure_frequency) then
-            call do_frequency_step(simulation, course, output, error)
+            call run_frequency_step(simulation, i, output%results, output%log, error)
          else
             call run_step(simulation, course, output, error)
          end if
@@ -188,24 +187,5 @@ contains
       end do
       call keep_at_end(simulation, course, output, error)
    end subroutine run_steps
-
-   !> A frequency step, which is finished once it has begun.
-   subroutine do_frequency_step(simulation, course, output, error)
-      type(simulation_type), intent(inout) :: simulation
-      type(course_type), intent(inout) :: course
-      type(output_type), intent(inout) :: output
-      type(error_type), allocatable, intent(out) :: error
-      logical :: asked
-
-      if (course%entered) return
-      call run_frequency_step(simulation, course%step, output%results, output%log, error)
-      if (allocated(error)) return
-      course%entered = .true.
-      if (course%step == size(simulation%model%steps)) return
-      call start_looking(output%watch)
-      call look_for_stop(output%watch, asked)
-      if (asked) call stop_run(output%watch, 'after step '//to_text(course%step), &
-            simulation%motion%motion%t, error)
-   end subroutine do_frequency_step
 
 end module simulation

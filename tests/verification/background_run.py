@@ -1,6 +1,7 @@
 """Runs of the program in the background, for scripts that stop or kill them."""
 import contextlib
 import os
+import resource
 import signal
 import subprocess
 import sys
@@ -25,6 +26,16 @@ def ignore_hang_up():
     signal.signal(signal.SIGHUP, signal.SIG_IGN)
 
 
+def processor_time(process):
+    """Seconds that a process has computed so far: unlike the time elapsed they do not depend on
+    what else the machine does."""
+    try:
+        fields = Path(f'/proc/{process}/stat').read_text().rpartition(')')[2].split()
+    except OSError:
+        return float('inf')
+    return (int(fields[11]) + int(fields[12])) / os.sysconf('SC_CLK_TCK')
+
+
 class Job:
     """A run of the program in the background."""
 
@@ -39,10 +50,10 @@ class Job:
             env={**os.environ, 'OPENBLAS_NUM_THREADS': '1'})
 
     def until_it_computes(self, seconds=0.0):
-        """Waits until the run has begun its results, and so many seconds more."""
-        while not self.part.exists() and self.process.poll() is None:
+        """Waits until the run has begun its results and taken so much time of the processor."""
+        while self.process.poll() is None and not (
+                self.part.exists() and processor_time(self.process.pid) >= seconds):
             time.sleep(0.002)
-        time.sleep(seconds)
         return self
 
     def send(self, number):
@@ -57,8 +68,11 @@ class Job:
         return self.end()
 
     def end(self):
-        """Waits for the end; from here on there are a status, an output and a time."""
+        """Waits for the end; from here on there are a status, an output and times."""
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
         self.output, self.errors = self.process.communicate(timeout=300)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        self.processor = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
         self.seconds = time.perf_counter() - self.began
         self.status = self.process.returncode
         lines = (self.log.read_text() if self.log.exists() else '').splitlines() or ['']
