@@ -23,7 +23,8 @@ from carom_deck import Deck
 SHORTER = {'block/block': 0.0075, 'two_discs/equal': 0.3, 'two_discs/oblique': 0.4,
            'pounding_frame/frames': 0.15, 'crack/slap': 1.0, 'crack/slap_fictitious': 1.0}
 ALLOWED = 1e-11
-GROWTH = 100.0
+# One push tells the size of the growth, not more: a defect met here grew a million times as far
+GROWTH = 1000.0
 # Round-off itself, and counts of work done
 LEFT_OUT = {'residual', 'solves', 'factorizations', 'beta'}
 # Gaps and slips are lengths as displacements are, and may all be round-off
