@@ -5,6 +5,7 @@ module impact_scene
    use state_archive, only: archive_type
    use memory_shortage, only: check_allocation
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    use surfaces, only: beta_automatic, method_transformation
    use contact_motion, only: contact_motion_type, new_contact_motion, copy_contact_motion, &
          exchange_motions
@@ -183,13 +184,14 @@ contains
    subroutine pass_events(self, archive)
       class(scene_type), intent(inout) :: self
       type(archive_type), intent(inout) :: archive
-      integer :: i
+      integer :: i, status
 
       call archive%enter('waiting')
       call archive%pass('n', self%n_events)
       if (archive%reading .and. self%n_events > 0) then
          if (allocated(self%events)) deallocate (self%events)
-         allocate (self%events(max(16, self%n_events)))
+         allocate (self%events(max(16, self%n_events)), stat=status)
+         call check_allocation(status)
       end if
       do i = 1, self%n_events
          call archive%enter(to_text(i))

@@ -17,8 +17,8 @@ module memory_estimate
    implicit none
    private
 
-   public :: memory_type, item_length, state_bytes, estimate_memory, add_step_memory, memory_text
-   public :: megabytes
+   public :: memory_type, item_length, state_bytes, estimate_memory, add_step_memory
+   public :: memory_text, megabytes
    public :: item_model, item_matrices, item_state, item_frames, item_rows, item_contact
 
    integer, parameter :: item_length = 24
