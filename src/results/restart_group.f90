@@ -1,7 +1,8 @@
 !> /restart of a result file: the state that a run can go on from, and what it was read from.
 !>
-!> Each entry of the archive is a dataset, written anew in its place while its size stays. `entries`
-!> lists them and `checks` has a check sum of each: what is damaged is not taken for a state.
+!> Each entry of the archive is a dataset, written anew in its place while its size stays.
+!> `index/entries` lists them and `index/checks` has a check sum of each: what is damaged is not
+!> taken for a state.
 module restart_group
    use kinds, only: wp, int64
    use errors, only: error_type, new_error, status_file
@@ -21,6 +22,8 @@ module restart_group
    integer, parameter :: format_version = 1
    integer, parameter :: name_length = 160
    character(len=*), parameter :: root = '/restart'
+   !> What is said of the entries: no entry has a name that begins so, nor with deck/.
+   character(len=*), parameter :: contents = root//'/index'
    !> What an entry holds stands before its name in the list.
    character(len=*), parameter :: mark_real = 'real ', mark_integer = 'integer '
    character(len=*), parameter :: nl = new_line('a')
@@ -91,7 +94,7 @@ contains
          entries(i) = marked_name(archive%entries(i))
          checks(i) = check_sum(archive%entries(i))
       end do
-      call file%overwrite(root//'/checks', checks, 'check sums of the entries', error)
+      call file%overwrite(contents//'/checks', checks, 'check sums of the entries', error)
       if (allocated(error)) return
       call list_entries(self, file, entries, error)
    end subroutine write_state
@@ -107,7 +110,7 @@ contains
       if (allocated(error)) return
       call file%create_group(root, 'the state that a run can go on from with --restart', error)
       if (allocated(error)) return
-      call file%write_dataset(root//'/format', [format_version], &
+      call file%write_dataset(contents//'/format', [format_version], &
             'version of the meaning of the entries', error)
       if (allocated(error)) return
       call write_deck_names(self, file, error)
@@ -166,10 +169,10 @@ contains
          call file%remove(root//'/'//plain_name(self%entries(i)), error)
          if (allocated(error)) return
       end do
-      call file%remove(root//'/entries', error)
+      call file%remove(contents//'/entries', error)
       if (allocated(error)) return
-      call file%write_dataset(root//'/entries', entries, 'names of all entries, with their kinds', &
-            error)
+      call file%write_dataset(contents//'/entries', entries, &
+            'names of all entries, with their kinds', error)
       self%entries = entries
    end subroutine list_entries
 
@@ -194,8 +197,8 @@ contains
 
       call check_group(reader, path, error)
       if (allocated(error)) return
-      call reader%read_texts(root//'/entries', name_length, entries, error)
-      if (.not. allocated(error)) call reader%read_dataset(root//'/checks', checks, error)
+      call reader%read_texts(contents//'/entries', name_length, entries, error)
+      if (.not. allocated(error)) call reader%read_dataset(contents//'/checks', checks, error)
       sound = .not. allocated(error)
       if (sound) sound = size(checks) == size(entries)
       if (sound) then
@@ -229,7 +232,7 @@ contains
                //'  cure: run the deck from its start, with *RESTART, WRITE in its steps')
          return
       end if
-      call reader%read_dataset(root//'/format', version, error)
+      call reader%read_dataset(contents//'/format', version, error)
       if (allocated(error)) return
       if (size(version) == 1) then
          if (version(1) == format_version) return

@@ -15,7 +15,7 @@ import numpy as np
 
 def is_timing(name):
     """Whether a dataset says how long something took."""
-    return 'seconds' in name.rsplit('/', 1)[-1] or name == '/restart/checks'
+    return 'seconds' in name.rsplit('/', 1)[-1] or name == '/restart/index/checks'
 
 
 def objects_of(file):

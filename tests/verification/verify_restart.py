@@ -314,10 +314,10 @@ def check_damaged():
     carom(write('plain', SMALL.replace('*RESTART, WRITE, FREQUENCY=5\n', '')), '-o', path, '--overwrite')
     refused('no state', 'no state to go on from', '*RESTART, WRITE')
     edits = {
-        'another format': lambda group: group['format'].write_direct(np.array([99])),
+        'another format': lambda group: group['index/format'].write_direct(np.array([99])),
         'a number changed': lambda group: group['motion/d'].write_direct(group['motion/d'][:] + 1e-9),
         'an entry missing': lambda group: group.pop('motion/v'),
-        'the list missing': lambda group: group.pop('entries'),
+        'the list missing': lambda group: group.pop('index/entries'),
         'the deck cut': lambda group: group['deck/lines'].write_direct(np.array([3])),
     }
     words = ['another format', 'is damaged', 'is damaged', 'is damaged', 'is damaged']
@@ -346,7 +346,7 @@ def check_states():
     with h5py.File(FOLDER / 'every.h5') as file:
         before = file['cost/elapsed_seconds'][0]
         checks.true(file['restart/course/increment'][0] == 30000, 'its state is that of the end')
-        names = [name.decode().split(' ', 1)[1] for name in file['restart/entries'][:]]
+        names = [name.decode().split(' ', 1)[1] for name in file['restart/index/entries'][:]]
         checks.true(all(f'restart/{name}' in file for name in names), 'all entries are listed')
         checks.true('description' in file['restart/motion/d'].attrs, 'and described')
     longer = text.replace('1e-4, 3', '1e-4, 3.01').replace('FREQUENCY=5', 'FREQUENCY=1')
