@@ -41,6 +41,7 @@ contains
             call collect_state(simulation, course, archive)
             call measure_results(extents, output%results)
             call extents%pass_state(archive)
+            call output%results%gaps%pass_state(archive)
             call output%log%pass_state(archive)
             call cost%pass_times(archive)
             call write_state(output%results%restart, output%results%file, archive, error)
