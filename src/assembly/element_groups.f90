@@ -67,8 +67,8 @@ contains
       call number_groups(model, scheme_of, lumped_of, key, n_groups)
       allocate (groups(n_groups), stat=status)
       call check_allocation(status)
+      call list_members(groups, key)
       do g = 1, n_groups
-         groups(g)%member = pack([(e, e=1, model%elements%n)], key == g)
          e = groups(g)%member(1)
          groups(g)%kind = model%elements%kind(e)
          groups(g)%scheme = scheme_of(e)
@@ -79,6 +79,30 @@ contains
          call store_damping(groups(g))
       end do
    end subroutine build_groups
+
+   !> The elements of every group, in their order.
+   subroutine list_members(groups, key)
+      type(group_type), intent(inout) :: groups(:)
+      integer, intent(in) :: key(:)              !! (n_elements) their group, 0 for none
+      integer, allocatable :: n(:)
+      integer :: e, g, status
+
+      allocate (n(size(groups)), source=0, stat=status)
+      call check_allocation(status)
+      do e = 1, size(key)
+         if (key(e) > 0) n(key(e)) = n(key(e)) + 1
+      end do
+      do g = 1, size(groups)
+         allocate (groups(g)%member(n(g)), stat=status)
+         call check_allocation(status)
+      end do
+      n = 0
+      do e = 1, size(key)
+         if (key(e) == 0) cycle
+         n(key(e)) = n(key(e)) + 1
+         groups(key(e))%member(n(key(e))) = e
+      end do
+   end subroutine list_members
 
    !> What `*ELEMENT GROUP` says of each element.
    subroutine resolve_schemes(model, lumped_default, scheme_of, lumped_of)

@@ -33,6 +33,7 @@ module state_archive
       procedure :: add_reals
       procedure :: add_integers
       procedure :: has
+      procedure :: demand
       procedure :: pass_fixed
       generic :: pass => pass_real, pass_reals, pass_real_table, pass_integer, pass_long, &
             pass_integers, pass_logical, pass_logicals
@@ -89,6 +90,15 @@ contains
 
       has = place_of(self, full_name(self, name)) > 0
    end function has
+
+   !> What does not hold is the archive's problem with the entry.
+   subroutine demand(self, name, holds)
+      class(archive_type), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      logical, intent(in) :: holds
+
+      if (.not. holds) call complain(self, name)
+   end subroutine demand
 
    subroutine pass_real(self, name, value)
       class(archive_type), intent(inout) :: self

@@ -46,6 +46,7 @@ module contact_pairs
    type :: contact_pair_list_type
       type(contact_row_type), allocatable :: rows(:)
       character(len=2*name_length + 1), allocatable :: names(:)
+      integer :: n_names = 0                     !! while they are gathered: the list is longer then
    end type contact_pair_list_type
 
 contains
@@ -56,15 +57,16 @@ contains
       type(model_type), intent(in) :: model
       type(contact_pair_list_type), intent(out) :: list
       type(error_type), allocatable, intent(out) :: error
-      integer :: p, pass, n, e, status
+      integer :: p, pass, n, n_gaps, e, status
 
-      n = count(model%elements%kind(:model%elements%n) == element_gap)
+      n_gaps = count(model%elements%kind(:model%elements%n) == element_gap)
+      n = n_gaps
       do p = 1, size(model%pairs)
          do pass = 1, model%pairs(p)%passes
             n = n + size(model%surfaces(contactor_surface(model, p, pass))%nodes)
          end do
       end do
-      allocate (list%rows(n), list%names(0), stat=status)
+      allocate (list%rows(n), list%names(size(model%pairs) + n_gaps), stat=status)
       call check_allocation(status)
       n = 0
       do p = 1, size(model%pairs)
@@ -82,6 +84,7 @@ contains
          if (allocated(error)) return
          list%rows(n)%pair = pair_index(list)
       end do
+      list%names = list%names(:list%n_names)
    end subroutine find_contact_rows
 
    !> The surface whose nodes have rows: the slave, in the second pass the master.
@@ -137,25 +140,19 @@ contains
    subroutine append_name(list, name)
       type(contact_pair_list_type), intent(inout) :: list
       character(len=*), intent(in) :: name
-      character(len=2*name_length + 1), allocatable :: longer(:)
-      integer :: n, status
 
-      n = size(list%names)
-      if (n > 0) then
-         if (list%names(n) == name) return
+      if (list%n_names > 0) then
+         if (list%names(list%n_names) == name) return
       end if
-      allocate (longer(n + 1), stat=status)
-      call check_allocation(status)
-      longer(:n) = list%names
-      longer(n + 1) = name
-      call move_alloc(longer, list%names)
+      list%n_names = list%n_names + 1
+      list%names(list%n_names) = name
    end subroutine append_name
 
    pure function pair_index(list) result(pair)
       type(contact_pair_list_type), intent(in) :: list
       integer :: pair
 
-      pair = size(list%names)
+      pair = list%n_names
    end function pair_index
 
    !> A plane: g = n . (x + u - x_plane - s(t)). The normal of a circle is not known yet.

@@ -204,6 +204,12 @@ contains
       character(len=name_length) :: name
       real(wp) :: values(4)
 
+      if (index(model%element_sets(section%set)%name, '/') > 0) then
+         call fail_at(error, model%source, parameter_place(card, 'ELSET'), &
+               'a set of gaps names a group of the results', &
+               cure="give them a set without '/' in its name")
+         return
+      end if
       call get_name_parameter(card, 'INTERACTION', name, model%source, error)
       if (allocated(error)) return
       section%interaction = model%interaction_of%find(name)

@@ -31,18 +31,18 @@ contains
       type(deck_type), intent(in) :: deck
       type(error_type), allocatable, intent(out) :: error
 
-      call read_family(model%node_sets, 'node', ['NSET', 'NODE'], 'NSET', &
+      call read_family(model%node_sets, 'node', ['NSET', 'NODE'], &
             model%node_set_of, model%nodes%index_of, deck, model%source, error)
       if (allocated(error)) return
-      call read_family(model%element_sets, 'element', ['ELSET  ', 'ELEMENT'], 'ELSET', &
+      call read_family(model%element_sets, 'element', ['ELSET  ', 'ELEMENT'], &
             model%element_set_of, model%elements%index_of, deck, model%source, error)
    end subroutine read_sets
 
    !> The sets of nodes or of elements, from their own cards and those that define members.
-   subroutine read_family(sets, what, keywords, parameter_name, set_of, index_of, deck, source, &
-         error)
+   subroutine read_family(sets, what, keywords, set_of, index_of, deck, source, error)
       type(set_type), allocatable, intent(out) :: sets(:)
-      character(len=*), intent(in) :: what, keywords(2), parameter_name
+      character(len=*), intent(in) :: what
+      character(len=*), intent(in) :: keywords(2)   !! the first one is the parameter's name too
       type(name_map_type), intent(out) :: set_of
       type(integer_map_type), intent(in) :: index_of
       type(deck_type), intent(in) :: deck
@@ -52,12 +52,12 @@ contains
       integer :: i, set, status
 
       family%what = what
-      call name_sets(family, keywords, parameter_name, deck, source, error)
+      call name_sets(family, keywords, trim(keywords(1)), deck, source, error)
       if (allocated(error)) return
       do i = 1, deck%n_cards
          if (all(deck%cards(i)%keyword /= keywords)) cycle
-         if (.not. has_parameter(deck%cards(i), parameter_name)) cycle
-         call open_set(family, deck%cards(i), parameter_name, set, source, error)
+         if (.not. has_parameter(deck%cards(i), trim(keywords(1)))) cycle
+         call open_set(family, deck%cards(i), trim(keywords(1)), set, source, error)
          if (allocated(error)) return
          call read_members(family, set, deck%cards(i), index_of, deck, source, error)
          if (allocated(error)) return

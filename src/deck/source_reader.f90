@@ -69,10 +69,10 @@ contains
       type(error_type), allocatable, intent(out) :: error
 
       if (is_deck) then
-         call new_error(error, status_deck, path//':1: the deck is empty, or no plain file'// &
+         call new_error(error, status_deck, path//':1: the deck is empty'// &
                new_line('a')//'  cure: write at least *NODE, *ELEMENT and a step')
       else
-         call new_error(error, status_file, "'"//path//"' is empty, or no plain file")
+         call new_error(error, status_file, "'"//path//"' is empty")
       end if
    end subroutine refuse_empty
 

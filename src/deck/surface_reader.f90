@@ -65,6 +65,12 @@ contains
 
       call get_name_parameter(card, 'NAME', name, model%source, error)
       if (allocated(error)) return
+      if (index(name, '/') > 0) then
+         call fail_at(error, model%source, parameter_place(card, 'NAME'), &
+               "'"//trim(name)//"' is no name for a surface: it names a group of the results", &
+               cure="leave out the '/'")
+         return
+      end if
       if (model%surface_of%find(name) + model%rigid_surface_of%find(name) == 0) return
       call fail_at(error, model%source, parameter_place(card, 'NAME'), &
             "surface '"//trim(name)//"' is defined twice", cure='give every surface its own name')

@@ -78,6 +78,7 @@ contains
       type(state_type), intent(in) :: state
       integer :: status
 
+      if (allocated(self%inverse)) deallocate (self%inverse, self%force, self%change)
       if (.not. self%usable) return
       associate (mass => system%structure%lumped_mass)
          allocate (self%inverse(size(mass)), self%force(size(mass)), stat=status)

@@ -9,15 +9,16 @@ module kept_solutions
    use motion_state, only: state_type
    use gauss_matrices, only: kept_gauss_steps, drop_gauss
    use gauss_step, only: prepare_step
-   use equation_of_motion, only: prepare_again
-   use compliance_store, only: shelves_by_age, kept_columns
+   use equation_of_motion, only: system_type, prepare_again
+   use compliance_store, only: compliance_store_type, complex_columns_type, shelves_by_age, &
+         kept_columns
    use impact_scene, only: scene_type
    use row_compliance, only: refill_shelf
    use fourth_order_step, only: find_columns
    implicit none
    private
 
-   public :: kept_solutions_type, note_kept, make_again
+   public :: kept_solutions_type, note_kept, drop_kept, make_again
 
    !> Columns of the compliance of rows on one matrix.
    type :: kept_shelf_type
@@ -98,13 +99,34 @@ contains
       end associate
    end subroutine note_kept
 
+   !> Empties the stores.
+   subroutine drop_kept(scene)
+      type(scene_type), intent(inout) :: scene
+      type(compliance_store_type) :: no_columns
+      type(complex_columns_type) :: none_held
+
+      call drop_matrices(scene%system)
+      scene%compliances = no_columns
+      scene%held = none_held
+   end subroutine drop_kept
+
+   !> The matrices alone: their number tells the columns that belong to them.
+   subroutine drop_matrices(system)
+      type(system_type), intent(inout) :: system
+      integer(int64) :: generation
+
+      generation = system%matrices%generation
+      call system%matrices%forget()
+      system%matrices%generation = generation
+      call drop_gauss(system%gauss)
+   end subroutine drop_matrices
+
    !> Makes all again, in a scene whose step has begun and that has none of it yet.
    subroutine make_again(self, scene, state, error)
       type(kept_solutions_type), intent(in) :: self
       type(scene_type), intent(inout) :: scene
       type(state_type), intent(in) :: state
       type(error_type), allocatable, intent(out) :: error
-      integer(int64) :: generation
       integer :: i
 
       do i = 1, self%n_shelves
@@ -118,10 +140,7 @@ contains
          call find_columns(scene, self%held_rows, self%held_dt)
       end if
       ! matrices made for the columns alone have to go: they would be found in the store
-      generation = scene%system%matrices%generation
-      call scene%system%matrices%forget()
-      scene%system%matrices%generation = generation
-      call drop_gauss(scene%system%gauss)
+      call drop_matrices(scene%system)
       do i = 1, size(self%factors, 2)
          call prepare_again(scene%system, self%factors(:, i), state, error)
          if (allocated(error)) return

@@ -33,7 +33,7 @@ contains
          call check_allocation(status)
       end if
       if (n == size(list)) then
-         allocate (longer(2*n + 8), stat=status)
+         allocate (longer(grown(n)), stat=status)
          call check_allocation(status)
          longer(:n) = list
          call move_alloc(longer, list)
@@ -54,7 +54,7 @@ contains
          call check_allocation(status)
       end if
       if (n == size(list)) then
-         allocate (longer(2*n + 8), stat=status)
+         allocate (longer(grown(n)), stat=status)
          call check_allocation(status)
          longer(:n) = list
          call move_alloc(longer, list)
@@ -75,7 +75,7 @@ contains
          call check_allocation(status)
       end if
       if (n == size(list)) then
-         allocate (longer(2*n + 8), stat=status)
+         allocate (longer(grown(n)), stat=status)
          call check_allocation(status)
          longer(:n) = list
          call move_alloc(longer, list)
@@ -96,7 +96,7 @@ contains
          call check_allocation(status)
       end if
       if (n == size(list)) then
-         allocate (longer(2*n + 8), stat=status)
+         allocate (longer(grown(n)), stat=status)
          call check_allocation(status)
          longer(:n) = list
          call move_alloc(longer, list)
@@ -104,6 +104,14 @@ contains
       n = n + 1
       list(n) = item
    end subroutine append_place
+
+   !> Twice as long as a list is and a little more; without memory where that cannot be counted.
+   pure integer function grown(n)
+      integer, intent(in) :: n
+
+      if (n > huge(n) - n - 8) call check_allocation(n)
+      grown = 2*n + 8
+   end function grown
 
    pure subroutine fit_integers(list, n)
       integer, allocatable, intent(inout) :: list(:)

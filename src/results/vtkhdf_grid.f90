@@ -6,8 +6,8 @@
 !> left, and must be called before the file is closed. The data are written first and the number
 !> of frames last: whatever happens in between, a reader finds the frames before.
 module vtkhdf_grid
-   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_is_nan
    use errors, only: error_type, new_error, status_internal, status_numerical
+   use grid_field, only: field_type, chunk_rows, is_sound, append_field, copy_frame, cut_field
    use hdf5_file, only: hdf5_file_type, series_integer, series_real
    use kinds, only: int64, wp
    use text, only: to_text
@@ -20,21 +20,11 @@ module vtkhdf_grid
    character(len=*), parameter :: root = '/VTKHDF'
    integer, parameter :: most_frames = 256   ! gathered, and in a chunk of the lists of frames
    integer, parameter :: most_values = 2**16   ! points and cells of the gathered frames
-   integer, parameter :: fewest_rows = 256     ! in a chunk of a field
-   integer, parameter :: most_rows = 2**14     ! likewise
 
    !> Lists with an entry a frame that is always the same, and the numbers in a row of them.
    character(len=21), parameter :: step_lists(5) = [character(len=21) :: 'PartOffsets', &
          'NumberOfParts', 'PointOffsets', 'CellOffsets', 'ConnectivityIdOffsets']
    integer, parameter :: step_entries(5) = [0, 1, 0, 0, 0], step_components(5) = [0, 0, 0, 1, 1]
-
-   !> One quantity at the points or in the cells, for the gathered frames and the next one.
-   type :: field_type
-      character(len=:), allocatable :: data_path, offset_path
-      integer :: n = 0                      ! points or cells
-      logical :: partial = .false.          ! NaN stands where there is no value
-      real(wp), allocatable :: held(:, :)   ! (component, point or cell, frame after frame)
-   end type field_type
 
    !> The grid: the mesh, its fields and the number of frames written.
    type :: vtkhdf_grid_type
@@ -196,15 +186,6 @@ contains
             'where each frame begins in '//field%data_path, error)
    end subroutine create_field
 
-   !> Points or cells that lie together in the file: frames are cut into equal chunks.
-   pure integer function chunk_rows(field)
-      type(field_type), intent(in) :: field
-      integer :: n_chunks
-
-      n_chunks = (field%n + most_rows - 1)/most_rows
-      chunk_rows = max(fewest_rows, (field%n + n_chunks - 1)/max(1, n_chunks))
-   end function chunk_rows
-
    !> Bytes by which the file grows at most when the gathered frames are written: their data, chunks
    !> begun, and the tables of chunks.
    pure function bytes_needed(self) result(bytes)
@@ -231,8 +212,7 @@ contains
 
       do i = 1, size(self%fields)
          associate (field => self%fields(i))
-            if (is_sound(field%held(:, self%n_held*field%n + 1:(self%n_held + 1)*field%n), &
-                  field%partial)) cycle
+            if (is_sound(field, self%n_held)) cycle
             call new_error(error, status_numerical, field%data_path//' is not finite (NaN or ' &
                   //'infinite) at time '//to_text(time)//new_line('a') &
                   //'  cure: a smaller step; or other units, so that no number overflows')
@@ -240,20 +220,6 @@ contains
          end associate
       end do
    end subroutine check_finite
-
-   !> Whether all values are finite, or NaN where that is allowed.
-   pure function is_sound(values, partial) result(sound)
-      real(wp), intent(in) :: values(:, :)
-      logical, intent(in) :: partial
-      logical :: sound
-
-      if (partial) then
-         ! to compare a NaN is an invalid operation, to ask for one is not
-         sound = all(ieee_is_finite(values) .or. ieee_is_nan(values))
-      else
-         sound = all(ieee_is_finite(values))
-      end if
-   end function is_sound
 
    !> Hands over a scalar field for the next frame; it stays until it is set again.
    pure subroutine set_scalars(self, field, values)
@@ -311,7 +277,7 @@ contains
       call file%reserve(bytes_needed(self), error)
       if (allocated(error)) return
       do i = 1, size(self%fields)
-         call append_field(self, file, self%fields(i), error)
+         call append_field(self%fields(i), file, self%n_written, self%n_held, error)
          if (allocated(error)) return
       end do
       call append_steps(self, file, error)
@@ -326,22 +292,6 @@ contains
       self%n_held = 0
    end subroutine flush_frames
 
-   subroutine append_field(self, file, field, error)
-      type(vtkhdf_grid_type), intent(in) :: self
-      type(hdf5_file_type), intent(inout) :: file
-      type(field_type), intent(in) :: field
-      type(error_type), allocatable, intent(out) :: error
-      integer(int64) :: begin(self%n_held)
-      integer :: i
-
-      call file%append(field%data_path, field%held(:, :self%n_held*field%n), error)
-      if (allocated(error)) return
-      do i = 1, self%n_held
-         begin(i) = int(self%n_written + i - 1, int64)*field%n
-      end do
-      call file%append(field%offset_path, begin, error)
-   end subroutine append_field
-
    subroutine append_steps(self, file, error)
       type(vtkhdf_grid_type), intent(in) :: self
       type(hdf5_file_type), intent(inout) :: file
@@ -355,18 +305,6 @@ contains
       end do
       call file%append(root//'/Steps/Values', self%times(:self%n_held), error)
    end subroutine append_steps
-
-   !> Copies the frame behind one place in the list to the one behind another.
-   pure subroutine copy_frame(field, from, to)
-      type(field_type), intent(inout) :: field
-      integer, intent(in) :: from, to
-      integer :: i
-
-      if (from == to) return
-      do i = 1, field%n
-         field%held(:, to + i) = field%held(:, from + i)
-      end do
-   end subroutine copy_frame
 
    !> Frames appended so far, written or not.
    pure integer function count_frames(self)
@@ -391,11 +329,7 @@ contains
       integer :: i
 
       do i = 1, size(self%fields)
-         associate (field => self%fields(i))
-            call file%cut(field%data_path, int(n_frames, int64)*field%n, short, error)
-            if (allocated(error) .or. allocated(short)) return
-            call file%cut(field%offset_path, int(n_frames, int64), short, error)
-         end associate
+         call cut_field(self%fields(i), file, n_frames, short, error)
          if (allocated(error) .or. allocated(short)) return
       end do
       do i = 1, size(step_lists)

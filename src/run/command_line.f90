@@ -222,7 +222,9 @@ contains
          call usage_error(error, 'no deck given')
          return
       end if
-      if (allocated(command%output)) then
+      if (command%kind == command_check .and. allocated(command%restart)) then
+         call usage_error(error, '--restart goes with run: a check starts nothing')
+      else if (allocated(command%output)) then
          call check_ending(command%output, error)
          return
       else if (allocated(command%restart)) then

@@ -56,6 +56,7 @@ contains
       call archive%leave()
       twice = self%twins%n > 0
       call archive%pass('twice', twice)
+      if (archive%reading) call forget_twins(self%plan, self%twins)
       if (.not. twice) return
       call archive%enter('plan')
       call self%plan%pass_state(archive)
@@ -64,6 +65,15 @@ contains
       call self%twins%pass_state(archive, rows)
       call archive%leave()
    end subroutine pass_state
+
+   !> No TOLERANCE so far.
+   subroutine forget_twins(plan, twins)
+      type(plan_type), intent(out) :: plan
+      type(twins_type), intent(out) :: twins
+
+      plan%n_rehearsals = 0
+      twins%n = 0
+   end subroutine forget_twins
 
    !> At the start of a step.
    pure subroutine begin_course(self, i_step, t)

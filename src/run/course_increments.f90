@@ -2,7 +2,8 @@
 !> increments, or a TOLERANCE.
 module course_increments
    use kinds, only: wp
-   use errors, only: error_type, new_error, status_numerical
+   use errors, only: error_type, new_error, status_numerical, status_interrupted
+   use state_archive, only: archive_type
    use text, only: to_text
    use steps, only: step_type
    use run_log, only: log_type, say
@@ -11,6 +12,7 @@ module course_increments
    use increments, only: start_control, take_increment, take_automatic_increment
    use twin_motion, only: start_twins, take_fine_increment, compare_twins, step_is_over
    use rehearsal, only: rehearse, report_tolerance
+   use run_state, only: collect_state, rewind_state
    use course, only: course_type, is_fresh, find_next
    implicit none
    private
@@ -97,9 +99,8 @@ contains
 
       taken = .true.
       if (is_fresh(course)) then
-         call rehearse(simulation, course%step, log, watch, course%plan, error)
+         call start_to_tolerance(simulation, course, log, watch, error)
          if (allocated(error)) return
-         call start_twins(course%twins, simulation, course%plan%settings)
       end if
       taken = .not. step_is_over(course%twins)
       if (.not. taken) return
@@ -111,6 +112,26 @@ contains
       call compare_twins(course%twins, simulation)
       call count_increment(simulation, course, course%twins%step_time, course%twins%dt)
    end subroutine take_to_tolerance
+
+   !> The rehearsals of a step. Interrupted, they leave no trace: they will begin anew.
+   subroutine start_to_tolerance(simulation, course, log, watch, error)
+      type(simulation_type), intent(inout) :: simulation
+      type(course_type), intent(inout) :: course
+      type(log_type), intent(in) :: log
+      type(watch_type), intent(inout) :: watch
+      type(error_type), allocatable, intent(out) :: error
+      type(archive_type) :: before
+      type(error_type), allocatable :: failure
+
+      call collect_state(simulation, course, before)
+      call rehearse(simulation, course%step, log, watch, course%plan, error)
+      if (.not. allocated(error)) then
+         call start_twins(course%twins, simulation, course%plan%settings)
+      else if (error%status == status_interrupted) then
+         call rewind_state(simulation, course, before, failure)
+         if (allocated(failure)) call move_alloc(failure, error)
+      end if
+   end subroutine start_to_tolerance
 
    !> An increment has been taken: the course goes on to its end. Times are counted from the start
    !> of the step, not summed up: no drift over many increments.

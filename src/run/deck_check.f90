@@ -12,6 +12,7 @@ module deck_check
    use scene_setup, only: simulation_type, build_scene, begin_step
    use memory_estimate, only: memory_type, estimate_memory, add_step_memory, memory_text
    use memory_refusal, only: check_reading, check_building, check_need, limit_text
+   use output_plan, only: plan_type, new_plan
    use scene_features, only: feature_list_type, list_features, share_memory
    use scene_advice, only: advice_list_type, advise_step, advise_pairs
    use feature_report, only: report_features, report_advice
@@ -126,28 +127,31 @@ contains
       logical, intent(in) :: aloud
       type(preview_type), intent(inout) :: preview
       type(error_type), allocatable, intent(out) :: error
+      type(plan_type) :: plan
       integer :: i
 
+      call new_plan(plan, simulation%model)
       do i = 1, size(simulation%model%steps)
          call begin_step(simulation, i, error)
          if (allocated(error)) return
          if (aloud) call report_step(simulation, i, log)
-         call look_ahead(simulation, i, aloud, preview)
+         call look_ahead(simulation, i, aloud, plan, preview)
          simulation%motion%motion%t = simulation%motion%motion%t &
                + simulation%model%steps(i)%duration
       end do
    end subroutine go_through_steps
 
    !> Memory, features and advice of a step in force.
-   subroutine look_ahead(simulation, i_step, aloud, preview)
+   subroutine look_ahead(simulation, i_step, aloud, plan, preview)
       type(simulation_type), intent(in) :: simulation
       integer, intent(in) :: i_step
       logical, intent(in) :: aloud               !! this is a check
+      type(plan_type), intent(in) :: plan
       type(preview_type), intent(inout) :: preview
       type(feature_list_type) :: features
 
       call add_step_memory(preview%memory, simulation, simulation%model%steps(i_step))
-      call list_features(features, simulation, i_step)
+      call list_features(features, simulation, i_step, plan)
       call advise_step(preview%advice, simulation, i_step, features, &
             simulation%model%elements%n <= most_elements(merge(2, 1, aloud)))
       call advise_pairs(simulation, preview%may_meet)

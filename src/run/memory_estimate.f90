@@ -17,7 +17,8 @@ module memory_estimate
    implicit none
    private
 
-   public :: memory_type, item_length, estimate_memory, add_step_memory, memory_text, megabytes
+   public :: memory_type, item_length, state_bytes, estimate_memory, add_step_memory
+   public :: memory_text, megabytes
    public :: item_model, item_matrices, item_state, item_frames, item_rows, item_contact
 
    integer, parameter :: item_length = 24
@@ -66,9 +67,26 @@ contains
                   + real_bytes*n_states_kept*(4.0_wp*n_freedoms + n_history)
          end if
       end associate
+      ! one is gathered before it is written
+      if (any(simulation%model%steps%restart_frequency > 0)) self%items(item_state) = &
+            self%items(item_state) + state_bytes(simulation)
       self%items(item_contact) = real_bytes*contact_entries(simulation)
       call add_output(self, simulation)
    end subroutine estimate_memory
+
+   !> What a state for a restart holds: d, v, a and the forces beside them, the history; twice where
+   !> the motion is computed twice.
+   pure real(wp) function state_bytes(simulation)
+      type(simulation_type), intent(in) :: simulation
+      real(wp), parameter :: n_arrays = 6.0_wp
+
+      associate (structure => simulation%scene%system%structure, steps => simulation%model%steps)
+         state_bytes = real_bytes*(n_arrays*real(structure%map%n_freedoms, wp) &
+               + real(structure%n_history, wp) + n_arrays*real(simulation%scene%rows%n, wp))
+         if (any(steps%procedure == procedure_dynamic .and. .not. steps%direct)) state_bytes = &
+               2.0_wp*state_bytes
+      end associate
+   end function state_bytes
 
    !> Arrays of the states with contact that stand beside the first: where an impact is sought they
    !> are those at both ends of a part of the step, at the impact and on trial.

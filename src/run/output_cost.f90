@@ -7,7 +7,7 @@ module output_cost
          quantity_u, quantity_v, quantity_a, quantity_rf, quantity_s, quantity_e, quantity_ener, &
          quantity_peeq, quantity_cf, quantity_cdis, quantity_cpress, quantity_cslip, &
          quantity_cstate, quantity_names, n_quantities
-   use output_plan, only: plan_type, new_plan
+   use output_plan, only: plan_type
    use scene_setup, only: simulation_type
    implicit none
    private
@@ -42,15 +42,14 @@ module output_cost
 contains
 
    !> By the requests of a step that takes so many increments.
-   subroutine new_output_cost(self, simulation, step, increments)
+   subroutine new_output_cost(self, simulation, step, increments, plan)
       type(output_cost_type), intent(out) :: self
       type(simulation_type), intent(in) :: simulation
       type(step_type), intent(in) :: step
       real(wp), intent(in) :: increments         !! 0: modes
-      type(plan_type) :: plan
+      type(plan_type), intent(in) :: plan
       real(wp) :: file_every
 
-      call new_plan(plan, simulation%model)
       self%print_every = least_frequency(step, [request_node_print, request_element_print, &
             request_contact_print])
       if (self%print_every > 0.0_wp) call measure_rows(self, simulation, plan)

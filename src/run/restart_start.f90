@@ -6,6 +6,7 @@ module restart_start
    use file_calls, only: file_facts_type, look_at, is_same
    use part_file, only: part_file_type, fill_part, discard
    use state_archive, only: archive_type
+   use memory_shortage, only: check_allocation
    use model, only: model_type
    use places, only: source_type, fail_at
    use effective_matrix, only: mark_implicit
@@ -82,11 +83,12 @@ contains
       type(source_type) :: source
       character(len=definition_length), allocatable :: texts(:)
       type(definition_type), allocatable :: definitions(:)
-      integer :: i, equals
+      integer :: i, equals, status
 
       call read_restart_deck(reader, path, source, texts, error)
       if (allocated(error)) return
-      allocate (definitions(size(texts)))
+      allocate (definitions(size(texts)), stat=status)
+      call check_allocation(status)
       do i = 1, size(texts)
          equals = index(texts(i), '=')
          definitions(i)%name = texts(i)(:equals - 1)

@@ -10,14 +10,14 @@ module run_state
    use text, only: to_text
    use state_archive, only: archive_type
    use explicit_motion, only: go_on_explicitly
-   use kept_solutions, only: kept_solutions_type, note_kept, make_again
+   use kept_solutions, only: kept_solutions_type, note_kept, drop_kept, make_again
    use scene_setup, only: simulation_type, begin_step
    use course, only: course_type
    use amplitude_breaks, only: find_breaks
    implicit none
    private
 
-   public :: collect_state, restore_state
+   public :: collect_state, restore_state, rewind_state
 
    !> An increment's end that differs by less than this part of an increment from a whole number of
    !> them is one: as in `last_increment`.
@@ -25,18 +25,21 @@ module run_state
 
 contains
 
-   !> All that later increments depend on. The events have been fetched.
+   !> All that later increments depend on.
    subroutine collect_state(simulation, course, archive)
       type(simulation_type), intent(inout) :: simulation   !! as it was
       type(course_type), intent(inout) :: course           !! as it was
       type(archive_type), intent(out) :: archive
       type(kept_solutions_type) :: kept
+      integer :: n
 
       archive%reading = .false.
       call note_kept(kept, simulation%scene)
       call pass_course(simulation, course, archive)
       call pass_all(simulation, kept, archive)
       call pass_counts(simulation, archive)
+      n = archive%n + 1
+      call archive%pass('entries', n)
    end subroutine collect_state
 
    !> Puts the state into a simulation at its start. Errors: the archive is not one of this deck,
@@ -47,8 +50,14 @@ contains
       type(archive_type), intent(inout) :: archive
       type(error_type), allocatable, intent(out) :: error
       type(kept_solutions_type) :: kept
+      integer :: n
 
       archive%reading = .true.
+      n = 0
+      call archive%pass('entries', n)
+      call archive%demand('entries', archive%n >= n)
+      call check_archive(archive, error)
+      if (allocated(error)) return
       call pass_course(simulation, course, archive)
       call check_archive(archive, error)
       if (allocated(error)) return
@@ -72,6 +81,26 @@ contains
       if (allocated(error)) return
       call lengthen(simulation, course)
    end subroutine restore_state
+
+   !> Back to a state of this very run, in the same step.
+   subroutine rewind_state(simulation, course, archive, error)
+      type(simulation_type), intent(inout) :: simulation
+      type(course_type), intent(inout) :: course
+      type(archive_type), intent(inout) :: archive
+      type(error_type), allocatable, intent(out) :: error
+      type(kept_solutions_type) :: kept
+
+      archive%reading = .true.
+      call drop_kept(simulation%scene)
+      call pass_all(simulation, kept, archive)
+      call pass_course(simulation, course, archive)
+      call go_on_explicitly(simulation%scene%explicit, simulation%scene%system, &
+            simulation%motion%motion)
+      call make_again(kept, simulation%scene, simulation%motion%motion, error)
+      if (allocated(error)) return
+      call pass_counts(simulation, archive)
+      call check_archive(archive, error)
+   end subroutine rewind_state
 
    subroutine pass_course(simulation, course, archive)
       type(simulation_type), intent(in) :: simulation

@@ -16,7 +16,9 @@ module scene_features
    use increment_count, only: count_increments
    use structure, only: is_explicit
    use element_cost, only: iterations, group_seconds, pass_seconds
-   use memory_estimate, only: memory_type, item_frames, item_rows, item_contact, item_matrices
+   use memory_estimate, only: memory_type, item_frames, item_rows, item_contact, item_matrices, &
+         state_bytes
+   use output_plan, only: plan_type
    use output_cost, only: output_cost_type, new_output_cost, bytes_text
    implicit none
    private
@@ -26,7 +28,8 @@ module scene_features
          kind_rest
 
    integer, parameter :: kind_elements = 1, kind_solution = 2, kind_supports = 3, &
-         kind_contact = 4, kind_history = 5, kind_frames = 6, kind_energies = 7, kind_rest = 8
+         kind_contact = 4, kind_history = 5, kind_frames = 6, kind_energies = 7, kind_rest = 8, &
+         kind_states = 9
    integer, parameter :: most_features = 64
 
    !> Seconds on a processor of today, each found by a run that does little else.
@@ -60,17 +63,18 @@ module scene_features
 contains
 
    !> The features of a step that is in force.
-   subroutine list_features(self, simulation, i_step)
+   subroutine list_features(self, simulation, i_step, plan)
       type(feature_list_type), intent(out) :: self
       type(simulation_type), intent(in) :: simulation
       integer, intent(in) :: i_step
+      type(plan_type), intent(in) :: plan        !! what is recorded
       real(wp) :: freedoms
 
       self%step = i_step
       associate (step => simulation%model%steps(i_step))
          if (step%procedure /= procedure_frequency) self%increments &
                = real(count_increments(step), wp)
-         call new_output_cost(self%output, simulation, step, self%increments)
+         call new_output_cost(self%output, simulation, step, self%increments, plan)
          call add_elements(self, simulation, step)
          call add_solution(self, simulation, step)
          call add_supports(self, simulation)
@@ -130,23 +134,28 @@ contains
       type(feature_list_type), intent(inout) :: self
       type(simulation_type), intent(in) :: simulation
       type(step_type), intent(in) :: step
-      integer :: g, h, n
-      real(wp) :: seconds
+      integer, dimension(size(simulation%scene%system%structure%groups)) :: first, n
+      real(wp) :: seconds(size(first))
+      integer :: g, k, n_sorts
       logical :: linear
 
+      n = 0
+      seconds = 0.0_wp
+      n_sorts = 0
       associate (groups => simulation%scene%system%structure%groups)
          linear = simulation%scene%system%structure%is_linear
          do g = 1, size(groups)
-            if (any([(are_alike(groups(g), groups(h)), h=1, g - 1)])) cycle
-            n = 0
-            seconds = 0.0_wp
-            do h = g, size(groups)
-               if (.not. are_alike(groups(g), groups(h))) cycle
-               n = n + size(groups(h)%member)
-               seconds = seconds + group_seconds(groups(h), step, linear)
+            do k = 1, n_sorts
+               if (are_alike(groups(first(k)), groups(g))) exit
             end do
-            call add(self, kind_elements, to_text(n)//' '//name_of(groups(g)), &
-                  traits_of(groups(g), simulation%scene%system%static), seconds)
+            if (k > n_sorts) first(k) = g
+            n_sorts = max(n_sorts, k)
+            n(k) = n(k) + size(groups(g)%member)
+            seconds(k) = seconds(k) + group_seconds(groups(g), step, linear)
+         end do
+         do k = 1, n_sorts
+            call add(self, kind_elements, to_text(n(k))//' '//name_of(groups(first(k))), &
+                  traits_of(groups(first(k)), simulation%scene%system%static), seconds(k))
          end do
       end associate
    end subroutine add_elements
@@ -267,6 +276,7 @@ contains
 
       associate (list => simulation%contact, rows => simulation%scene%rows)
          do p = 1, size(list%names)
+            if (self%n == most_features) exit
             n = count(list%rows%pair == p)
             if (n == 0) cycle
             seconds = open_row
@@ -316,6 +326,7 @@ contains
                //plural(int(min(output%n_frames, 2.0e9_wp)), 'frame')//' of ' &
                //bytes_text(output%frame_bytes), output%frame_seconds*output%n_frames &
                /max(1.0_wp, self%increments))
+         call add_states(self, simulation)
          if (.not. output%energies) return
          seconds = energy_passes(simulation)*pass_seconds(simulation%scene%system%structure)
          call add(self, kind_energies, 'energies', 'of the whole' &
@@ -323,6 +334,19 @@ contains
                //every(output%energy_every), seconds/output%energy_every)
       end associate
    end subroutine add_output
+
+   !> States for a restart. Their writing is put off where it would take more than a twentieth of
+   !> the time.
+   subroutine add_states(self, simulation)
+      type(feature_list_type), intent(inout) :: self
+      type(simulation_type), intent(in) :: simulation
+
+      associate (step => simulation%model%steps(self%step))
+         if (step%restart_frequency == 0) return
+         call add(self, kind_states, 'restart', 'states of '//bytes_text(state_bytes(simulation)) &
+               //every(real(step%restart_frequency, wp)), 0.0_wp)
+      end associate
+   end subroutine add_states
 
    !> Passes over the elements for their energies: explicit steps find them on their way; those of
    !> several groups are found by themselves.

@@ -73,12 +73,16 @@ contains
          if (restart%wanted .and. .not. allocated(error)) call restore_state(simulation, course, &
                restart%archive, error)
          call leave(cost, outer)
-         if (allocated(error)) return
-         call enter(cost, phase_output, outer, .true.)
-         call open_outputs(restart, command, simulation, output, error)
-         call leave(cost, outer)
+         if (.not. allocated(error)) then
+            call enter(cost, phase_output, outer, .true.)
+            call open_outputs(restart, command, simulation, output, error)
+            call leave(cost, outer)
+         end if
       end associate
-      if (allocated(error)) return
+      if (allocated(error)) then
+         call simulation%scene%system%matrices%release()
+         return
+      end if
       call run_steps(simulation, command, restart, course, output, error)
       call keep_if_interrupted(simulation, course, output, error)
       call tell_how_to_go_on(command, error)
@@ -89,9 +93,7 @@ contains
       call report_summary(simulation, output%log)
       if (.not. allocated(error)) call advise_end(lessons, simulation)
       call report_advice(lessons, output%log)
-      call report_end(output%log, error)
-      call close_log(output%log, close_error)
-      if (.not. allocated(error) .and. allocated(close_error)) call move_alloc(close_error, error)
+      call end_log(output%log, error)
       call simulation%scene%system%matrices%release()
    end subroutine run_deck
 
@@ -127,6 +129,17 @@ contains
                //command%definitions(i)%value
       end do
    end subroutine tell_how_to_go_on
+
+   !> Ends the log and closes it.
+   subroutine end_log(log, error)
+      type(log_type), intent(inout) :: log
+      type(error_type), allocatable, intent(inout) :: error
+      type(error_type), allocatable :: close_error
+
+      call report_end(log, error)
+      call close_log(log, close_error)
+      if (.not. allocated(error) .and. allocated(close_error)) call move_alloc(close_error, error)
+   end subroutine end_log
 
    !> The last line of the log: how the run ended; what a message says beyond its first line, as the
    !> cure, goes before.

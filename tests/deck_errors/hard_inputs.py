@@ -47,10 +47,10 @@ def bad_files(Case, good):
     deep["d60.inc"] = b"** nothing\n"
     png = b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR" + bytes(range(256))
     return [
-        Case("include_a_pipe", include + good, ["no plain file"], line=1, files={"part.inc": fifo}),
+        Case("include_a_pipe", include + good, ["pipe or device"], line=1, files={"part.inc": fifo}),
         Case("include_an_empty_file", include + good, ["is empty"], line=1, files={"part.inc": b""}),
-        Case("include_a_device", b"*INCLUDE, INPUT=/dev/zero\n" + good, ["no plain file"], line=1),
-        Case("include_nowhere", b"*INCLUDE, INPUT=/dev/null\n" + good, ["no plain file"], line=1),
+        Case("include_a_device", b"*INCLUDE, INPUT=/dev/zero\n" + good, ["pipe or device"], line=1),
+        Case("include_nowhere", b"*INCLUDE, INPUT=/dev/null\n" + good, ["pipe or device"], line=1),
         Case("include_a_dangling_link", include + good, ["cannot open"], line=1,
              files={"part.inc": link_to("not_there")}),
         Case("include_a_huge_file", include + good, ["2 147 483 646 bytes"], line=1,
@@ -99,6 +99,13 @@ def bad_bytes(Case, good):
              ["cannot be seen", "MAS\\u200BSES"], ["\u200b"]),
         case("latin1_in_a_name", b"ELSET=MASSES", latin, ["cannot be seen", "ST\\xF6\\xDFE"]),
         case("broken_utf8", b"*MASS", b"*MA\xe2\x82SS", ["unknown keyword", "\\xE2\\x82"]),
+        case("surface_with_a_slash", STEP_AT, b"*SURFACE, NAME=A/B, TYPE=NODE\n2\n" + STEP_AT,
+             ["names a group of the results"]),
+        case("commas_alone", b"2, 1., 0.", b",,,", ["node id: missing"]),
+        case("parameter_twice_without_effect", STEP_AT, b"*OUTPUT, COMPRESS=1, COMPRESS=9\n" + STEP_AT,
+             ["COMPRESS is given twice"]),
+        case("blank_in_a_parameter", b"*NODE\n", b"*PARAMETER\nk = 1 2\n*NODE\n",
+             ["'1 2' is not a number"]),
         case("comma_missing_behind_a_name", b"*NODE\n", b"*NODE, NSET=ALL INPUT=x\n",
              ["is a comma missing", "ALLINPUT=X"]),
     ]

@@ -47,7 +47,8 @@ def command_lines(folder):
     yield 'version', ['--version'], 0
     yield 'unknown option', ['run', deck, '--fast'], 1
     yield 'no deck', ['run', str(folder / 'none.inp')], 3
-    yield 'no folder', ['run', deck, '-o', str(folder / 'none' / 'result.h5')], 3
+    for path in (deck, str(folder / 'sparse_solver.inp')):
+        yield 'no folder', ['run', path, '-o', str(folder / 'none' / 'result.h5')], 3
 
 
 def main():

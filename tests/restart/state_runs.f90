@@ -12,7 +12,7 @@ module state_runs
    use deck_check, only: preview_type, prepare
    use step_start, only: start_step
    use increment_checks, only: needs_energies
-   use course, only: course_type, begin_course, is_fresh
+   use course, only: course_type, begin_course
    use course_increments, only: take_next
    use increment_end, only: count_events
    implicit none
@@ -49,7 +49,7 @@ contains
       call initial_motion(self%simulation, error)
    end subroutine open_run
 
-   !> One increment, at the start of a step after what belongs to that.
+   !> One increment, or the start of a step.
    recursive subroutine take_one(self, taken, error)
       type(run_type), intent(inout) :: self
       logical, intent(out) :: taken              !! false at the end of the run
@@ -59,8 +59,13 @@ contains
       associate (simulation => self%simulation, course => self%course)
          if (course%step == 0) call begin_course(course, 1, simulation%motion%motion%t)
          if (simulation%model%steps(course%step)%procedure == procedure_frequency) return
-         if (is_fresh(course)) call start_step(simulation, course%step, error)
-         if (allocated(error)) return
+         if (.not. course%entered) then
+            call start_step(simulation, course%step, error)
+            course%entered = .true.
+            taken = .not. allocated(error)
+            if (course%step == 1) simulation%scene%n_events = 0
+            return
+         end if
          call take_next(simulation, course, self%log, self%watch, taken, error)
          if (allocated(error)) return
          if (taken) then

@@ -26,7 +26,7 @@ def begin(*options, every=1, **more):
 def halted(runs, seconds):
     """Lets the runs record a little, halts them, waits until they are so old."""
     for run in runs:
-        run.wait_for('deck.h5.part')
+        run.wait_for('deck.sta')
     time.sleep(MADE)
     for run in runs:
         run.halt()
@@ -71,7 +71,7 @@ def check_end(checks):
     """A directory that takes the place of the results just before they come there."""
     place = Place(SDOF.replace('dt = 0.04', 'dt = 4e-4'))
     run = place.start()
-    run.wait_for('deck.h5.part')
+    run.wait_for('deck.sta')
     (place.folder / 'deck.h5').mkdir()
     said(checks, run.finish(), 3, ["'deck.h5'", "complete in 'deck.h5.part'"],
          'a directory in place of the results at the end')
@@ -86,7 +86,7 @@ def check_two_runs(checks):
     place = Place(f'*INCLUDE, INPUT=model.inc\n*SURFACE, NAME=body{tail}')
     (place.folder / 'model.inc').write_text(head)
     first = place.start()
-    first.wait_for('deck.h5.part')
+    first.wait_for('deck.sta')
     first.halt()
     for options in ((), ('--overwrite',), ('-o', './deck.h5'), ('-o', str(place.folder / 'deck.h5'))):
         second = place.run(*options)

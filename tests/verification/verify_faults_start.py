@@ -4,12 +4,30 @@ Names of results, directories that are missing or may not be written to, results
 exist, decks that cannot be read or would be overwritten, leftovers of a crash, no space at all.
 """
 import os
-import shutil
 import subprocess
 
 from carom_case import INPUT, Checks
 from fault_case import (PROGRAM, SDOF, Place, limited, refused, rows_of, said, saved,
                         without_privileges)
+
+# Nothing has mass: the run finds that out when its files are made, before its first record
+MASSLESS = """*NODE
+7, 0, 0
+8, 1, 0
+*ELEMENT, TYPE=SPRING2, ELSET=spring
+1, 7, 8
+*SPRING, ELSET=spring
+1, 1
+5
+*BOUNDARY
+7, 1
+*STEP
+*FREQUENCY
+1
+*NODE FILE
+U
+*END STEP
+"""
 
 
 def check_names(checks):
@@ -76,16 +94,15 @@ def check_existing(checks):
     run = place.run('--define', 'dt=0', '--overwrite')
     checks.true(run.status == 2 and rows_of(place.folder / 'deck.h5')[0] == 1001,
                 f'--overwrite and a mistake in the deck: status {run.status}, the results stay')
-    # the first increment of this one cannot be taken: nothing is recorded
     old = place.read()
-    (place.folder / 'deck.inp').write_text(SDOF.replace('1, 1, 1\n', '1, 1, 1e200\n'))
+    (place.folder / 'deck.inp').write_text(MASSLESS)
     run = place.run('--overwrite')
-    said(checks, run, 4, ["'deck.h5' is still that of an earlier run"],
+    said(checks, run, 2, ['there are no modes', "'deck.h5' is still that of an earlier run"],
          '--overwrite and a stop before the first record')
     checks.true(place.read() == old, 'a stop before the first record: the results stay')
     (place.folder / 'deck.h5').unlink()
     run = place.run()
-    said(checks, run, 4, ['no results were saved'], 'a stop before the first record')
+    said(checks, run, 2, ['there are no modes', 'no results were saved'], 'a stop before the first record')
     checks.true(place.names() == ['deck.inp', 'deck.log', 'deck.sta'],
                 f'a stop before the first record: {place.names()}')
     (place.folder / 'deck.inp').write_text(SDOF)
@@ -209,11 +226,8 @@ def check_no_space(checks):
     for size in (0, 1000, 30000, 100000):
         place = Place()
         run = place.run(prepare=limited(size))
-        said(checks, run, 3, ["cannot write 'deck.h5'", 'limit of the size of a file', 'cure:',
-                              'no results were saved'], f'files of {size} bytes at most')
-        checks.true(place.names() == ['deck.inp', 'deck.log', 'deck.sta'],
-                    f'files of {size} bytes at most: {place.names()}')
-    checks.true(shutil.disk_usage(place.folder).free > 0, 'the disk itself has space')
+        refused(checks, run, ["cannot write 'deck.h5'", 'limit of the size of a file'],
+                ['deck.inp'], f'files of {size} bytes at most')
 
 
 def main():
