@@ -1,5 +1,6 @@
 !> The increments of a static or dynamic step, from its start or from where a run has got to in it.
 module time_loop
+   use memory_shortage, only: check_allocation
    use kinds, only: wp
    use errors, only: error_type
    use cost_account, only: enter, leave, end_increments, phase_build, phase_output
@@ -30,6 +31,7 @@ contains
       type(output_type), intent(inout) :: output
       type(error_type), allocatable, intent(out) :: error
       logical :: taken
+      integer :: status
 
       if (.not. course%entered) then
          call enter_step(simulation, course, output, error)
@@ -41,7 +43,8 @@ contains
       call stop_if_asked(simulation, course, output, error)
       if (allocated(error)) return
       if (is_to_be_rehearsed(simulation, course)) then
-         allocate (output%before_rehearsals)
+         allocate (output%before_rehearsals, stat=status)
+         call check_allocation(status)
          call collect_state(simulation, course, output%before_rehearsals)
       end if
       do
