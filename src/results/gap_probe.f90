@@ -46,7 +46,9 @@ contains
       class(gap_probe_type), intent(inout) :: self
       type(archive_type), intent(inout) :: archive
 
+      call archive%enter('probe')
       call self%geometry%pass_state(archive)
+      call archive%leave()
    end subroutine pass_state
 
    !> Gaps of all rows, NaN where there is no partner within the reach.

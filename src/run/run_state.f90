@@ -39,7 +39,7 @@ contains
       call pass_all(simulation, kept, archive)
       call pass_counts(simulation, archive)
       n = archive%n + 1
-      call archive%pass('entries', n)
+      call archive%pass('counts/entries', n)
    end subroutine collect_state
 
    !> Puts the state into a simulation at its start. Errors: the archive is not one of this deck,
@@ -54,8 +54,8 @@ contains
 
       archive%reading = .true.
       n = 0
-      call archive%pass('entries', n)
-      call archive%demand('entries', archive%n >= n)
+      call archive%pass('counts/entries', n)
+      call archive%demand('counts/entries', archive%n >= n)
       call check_archive(archive, error)
       if (allocated(error)) return
       call pass_course(simulation, course, archive)

@@ -38,9 +38,14 @@ contains
          call enter(cost, phase_output, outer, .true.)
          call flush_results(output%results, error)
          if (.not. allocated(error)) then
-            call collect_state(simulation, course, archive)
+            if (allocated(output%before_rehearsals)) then
+               archive = output%before_rehearsals
+            else
+               call collect_state(simulation, course, archive)
+            end if
             call measure_results(extents, output%results)
             call extents%pass_state(archive)
+            call output%results%gaps%pass_state(archive)
             call output%log%pass_state(archive)
             call cost%pass_times(archive)
             call write_state(output%results%restart, output%results%file, archive, error)

@@ -6,8 +6,8 @@
 !>    resume_states DECK PLACES [MOST [NAME=VALUE ...]]
 !>
 !> PLACES states are taken, all if the run has no more increments; the first two, the last, and
-!> those at the starts and ends of steps always. MOST, if not 0, limits the increments of the run. Ends with
-!> status 1 where something differs.
+!> those at the starts and ends of steps always. MOST, if not 0, limits the increments of the run.
+!> Ends with status 1 where something differs.
 program resume_states
    use, intrinsic :: iso_fortran_env, only: output_unit
    use kinds, only: wp

@@ -120,7 +120,11 @@ class Victim:
                          f'{self.name}, files of at most {limit} bytes: status {job.status}, '
                          f'{job.errors.splitlines()[:1]}')
         self.counts['writes that failed'] += 1
-        self.read()
+        # where there is no room for the first frame there is nothing for VTK to show
+        if self.part.exists() and not len(read_all(self.part)['VTKHDF/Steps/Values']):
+            self.counts['before the first frame'] += 1
+        else:
+            self.read()
 
     def read(self):
         """What a run has left is read by h5py and VTK."""
