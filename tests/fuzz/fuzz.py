@@ -3,7 +3,7 @@
     python3 fuzz.py CAROM [--count N] [--seed S] [--jobs J] [--keep FOLDER] [--only I]
 
 Mutant I of seed S is always the same. Each must end with status 0, 2, 3 or 4 within bounds of time
-and memory (or with 5 in time, where it was asked to stop after 20 s), without a signal or an error of the language or a sanitizer, with a message that names a
+and memory (or with 5 in time, where it was asked to stop after 10 s), without a signal or an error of the language or a sanitizer, with a message that names a
 place for status 2, and with numbers for status 0. Failing mutants are kept with the command that repeats them.
 """
 import argparse
