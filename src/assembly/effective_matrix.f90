@@ -209,7 +209,8 @@ contains
       allocate (local(n, size(group%lm, 2)), stat=status)
       call check_allocation(status)
       call gather(group, d, local)
-      memory = group_history(group, history)
+      allocate (memory, source=group_history(group, history), stat=status)
+      call check_allocation(status)
       if (size(group%lm, 2) < worth_threads) then
          colours%first = [1, size(group%lm, 2) + 1]
          colours%element = [(i, i=1, size(group%lm, 2))]

@@ -114,7 +114,7 @@ def find_faults(folder, command, status, text):
         return [*faults, "hangs"]
     if status not in KINDS or (status == 5 and command == "check"):
         return [*faults, f"status {status}"]
-    if status != 0:
+    if status not in (0, 5):
         faults += find_faults_of_message(status, text)
     finished = ("out.h5", "out.log", "out.sta") if command == "run" and status != 2 else ()
     left = [path.name for path in folder.glob("out*") if path.name not in finished]
