@@ -23,7 +23,7 @@ SANITIZERS = {
 }
 # What no output may hold: signs of an error that the program did not foresee
 SIGNS = re.compile(r"Fortran runtime error|AddressSanitizer:(?! failed to allocate)|runtime error:|"
-                   r"LeakSanitizer|Error termination|Backtrace|ERROR STOP|^STOP|"
+                   r"LeakSanitizer|Error termination|Backtrace|ERROR STOP|^STOP\b|"
                    r"Operating system error|Assertion|terminate called|HDF5-DIAG|Segmentation|"
                    r"internal error|MUMPS.*error",
                    re.IGNORECASE | re.MULTILINE)
