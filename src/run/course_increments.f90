@@ -17,7 +17,7 @@ module course_increments
    implicit none
    private
 
-   public :: take_next, report_course, is_to_be_rehearsed
+   public :: take_next, report_course
 
 contains
 
@@ -76,16 +76,6 @@ contains
       end associate
       call count_increment(simulation, course, step_time, dt)
    end subroutine take_automatic
-
-   !> Whether rehearsals come next. What they do is put back, but not all: counts of work and
-   !> matrices that are kept stay.
-   pure logical function is_to_be_rehearsed(simulation, course)
-      type(simulation_type), intent(in) :: simulation
-      type(course_type), intent(in) :: course
-
-      is_to_be_rehearsed = is_fresh(course) .and. .not. simulation%scene%system%static .and. &
-            .not. simulation%model%steps(course%step)%direct
-   end function is_to_be_rehearsed
 
    !> Increments of a dynamic step that keep its error to TOLERANCE, found by rehearsals before the
    !> first of them.

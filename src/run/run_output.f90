@@ -1,7 +1,6 @@
 !> What a run writes to, and when others see it.
 module run_output
    use kinds, only: wp, int64
-   use state_archive, only: archive_type
    use errors, only: error_type
    use cost_account, only: cost_type
    use result_file, only: result_file_type
@@ -23,7 +22,6 @@ module run_output
       type(preview_type) :: preview
       type(publishing_type) :: publishing
       type(watch_type) :: watch
-      type(archive_type), allocatable :: before_rehearsals   !! the state, while they last
       real(wp) :: end_time = 0.0_wp              !! total time at the end of the run
       logical :: state_due = .false.             !! *RESTART asks for the state of this increment
       integer(int64) :: iterations = 0           !! at the end of the last increment

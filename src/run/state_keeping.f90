@@ -38,11 +38,7 @@ contains
          call enter(cost, phase_output, outer, .true.)
          call flush_results(output%results, error)
          if (.not. allocated(error)) then
-            if (allocated(output%before_rehearsals)) then
-               archive = output%before_rehearsals
-            else
-               call collect_state(simulation, course, archive)
-            end if
+            call collect_state(simulation, course, archive)
             call measure_results(extents, output%results)
             call extents%pass_state(archive)
             call output%results%gaps%pass_state(archive)

@@ -1,6 +1,5 @@
 !> The increments of a static or dynamic step, from its start or from where a run has got to in it.
 module time_loop
-   use memory_shortage, only: check_allocation
    use kinds, only: wp
    use errors, only: error_type
    use cost_account, only: enter, leave, end_increments, phase_build, phase_output
@@ -13,8 +12,7 @@ module time_loop
    use increment_checks, only: check_finite, check_energies
    use run_report, only: report_step
    use course, only: course_type
-   use course_increments, only: take_next, report_course, is_to_be_rehearsed
-   use run_state, only: collect_state
+   use course_increments, only: take_next, report_course
    use run_output, only: output_type, publish_after_start
    use increment_end, only: finish_increment, stop_if_asked
    implicit none
@@ -31,7 +29,6 @@ contains
       type(output_type), intent(inout) :: output
       type(error_type), allocatable, intent(out) :: error
       logical :: taken
-      integer :: status
 
       if (.not. course%entered) then
          call enter_step(simulation, course, output, error)
@@ -42,15 +39,9 @@ contains
       call start_looking(output%watch)
       call stop_if_asked(simulation, course, output, error)
       if (allocated(error)) return
-      if (is_to_be_rehearsed(simulation, course)) then
-         allocate (output%before_rehearsals, stat=status)
-         call check_allocation(status)
-         call collect_state(simulation, course, output%before_rehearsals)
-      end if
       do
          call take_next(simulation, course, output%log, output%watch, taken, error)
          if (allocated(error) .or. .not. taken) exit
-         if (allocated(output%before_rehearsals)) deallocate (output%before_rehearsals)
          call finish_increment(simulation, course, output, error)
          if (allocated(error)) exit
       end do

@@ -32,7 +32,7 @@ FILE_ERROR = 3
 
 def has_state(path):
     """Whether there is a result file with a state to go on from."""
-    return path.exists() and 'restart/entries' in read_all(path)
+    return path.exists() and 'restart/index/entries' in read_all(path)
 
 
 class Victim:
@@ -57,6 +57,7 @@ class Victim:
     def begin(self, prepare=default_signals):
         """A run from the last state, or from the start where there is none."""
         if has_state(self.part):
+            self.counts['restarts'] += 1
             return Job(self.deck, self.part, '--restart', str(self.part), prepare=prepare)
         return Job(self.deck, self.part, '--overwrite', prepare=prepare)
 
@@ -162,6 +163,7 @@ def main():
     parser.add_argument('--case', action='append', choices=list(CASES), help='default: all')
     arguments = parser.parse_args()
     checks = Checks()
+    restarts = 0
     names = arguments.case or list(CASES)
     for i, name in enumerate(names):
         victim = Victim(checks, name, random.Random(f'{arguments.seed} {name}'))
@@ -170,8 +172,11 @@ def main():
         victim.finish('writes failed')
         while left > 0:
             left -= victim.chain(left)
+        restarts += victim.counts['restarts']
         print(f'{name} ({victim.processor:.2f} s of processor time): '
               + ', '.join(f'{n} {what}' for what, n in sorted(victim.counts.items())))
+    # else states are not found where they are looked for
+    checks.at_least(restarts, 0.5 * arguments.kills, 'runs that went on from a state')
     checks.finish()
 
 
