@@ -10,7 +10,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-TIME_LIMIT = 20             # seconds after which a run is asked to stop: it may well be a long one
+TIME_LIMIT = 10             # seconds after which a run is asked to stop: it may well be a long one
 CPU_LIMIT = 40.0            # seconds of processor time after which it hangs
 WALL_LIMIT = 600.0          # likewise, if it only waits
 MEMORY_LIMIT = 1500         # MB with what sanitizers need; the program is given half of it
