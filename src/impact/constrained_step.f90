@@ -20,6 +20,14 @@ module constrained_step
 
    public :: advance_smoothly, solve_statically
 
+   !> How far Newton's method has come in a step.
+   type :: progress_type
+      real(wp) :: to_displacement = 1.0_wp       !! displacement in a unit of the correction
+      real(wp) :: reference = 0.0_wp             !! largest forces met
+      real(wp) :: left = huge(1.0_wp)            !! residual of the last iteration
+      real(wp) :: correction = huge(1.0_wp)      !! of the last iteration
+   end type progress_type
+
 contains
 
    !> M a + C v + S(d) = f + Gt lambda over a step dt, for the touching rows
@@ -40,7 +48,7 @@ contains
       type(newmark_type) :: newmark
       type(contact_step_type) :: step
       real(wp), dimension(size(from%motion%d)) :: fixed, psi, delta
-      real(wp) :: reference, left
+      type(progress_type) :: progress
       logical :: converged
       integer :: iteration, outer
 
@@ -54,8 +62,7 @@ contains
       fixed = fixed_force(scene%system, from%motion, to%motion)
       call start_near(scene%system, from%motion, dt, beta, to%motion)
       call describe_step(scene, dt, beta, step, held)
-      reference = 0.0_wp
-      left = huge(left)
+      progress%to_displacement = step%to_displacement
       do iteration = 1, scene%system%max_iterations
          psi = residual(scene%system, fixed, from%motion%history, to%motion)
          call prepare_motion(scene%system, dt, beta, to%motion%d, from%motion%history, error)
@@ -68,9 +75,10 @@ contains
          call note_contact_force(scene, to)
          converged = scene%system%structure%is_linear
          if (converged) exit
-         reference = max(reference, norm2(psi), norm2(fixed))
-         converged = has_converged(scene, fixed, from, to, delta, reference, left)
-         call record_residual(scene, iteration, left/max(reference, tiny(1.0_wp)))
+         progress%reference = max(progress%reference, norm2(psi), norm2(fixed))
+         call judge(scene, fixed, from, to, delta, progress, converged)
+         call record_residual(scene, iteration, &
+               progress%left/max(progress%reference, tiny(1.0_wp)))
          if (converged) exit
       end do
       if (.not. converged) call not_converged(scene, to%motion%t, error)
@@ -128,30 +136,39 @@ contains
       if (present(held)) step%held = held
    end subroutine describe_step
 
-   !> Newton's method has converged when both the correction and the residual are small, or when the
-   !> correction is small and the residual has come down to round-off: it falls no further. Nearly
-   !> incompressible solids have such round-off above the tolerance.
-   function has_converged(scene, fixed, from, to, delta, reference, left) result(converged)
+   !> Newton's method has converged when both the correction and the residual are small, or have come
+   !> down to round-off: then they fall no further. Nearly incompressible solids have such round-off
+   !> of the residual above the tolerance; under stress at rest the acceleration is nothing else, and
+   !> its correction is measured by the displacements.
+   subroutine judge(scene, fixed, from, to, delta, progress, converged)
       type(scene_type), intent(inout) :: scene
-      real(wp), intent(in) :: fixed(:), delta(:), reference
+      real(wp), intent(in) :: fixed(:), delta(:)
       type(contact_motion_type), intent(in) :: from
       type(contact_motion_type), intent(inout) :: to   !! gets the history at its displacements
-      real(wp), intent(inout) :: left            !! residual of the iteration before, then of this
-      logical :: converged
+      type(progress_type), intent(inout) :: progress
+      logical, intent(out) :: converged
       real(wp), parameter :: most_round_off = 1.0e-7_wp
-      real(wp) :: psi(size(fixed)), motion, before
+      real(wp) :: psi(size(fixed)), motion, tolerance
+      type(progress_type) :: before
+      logical :: small
 
+      tolerance = scene%system%tolerance
+      before = progress
       motion = norm2(to%motion%a)
       if (scene%system%static) motion = norm2(to%motion%d)
       psi = residual(scene%system, fixed, from%motion%history, to%motion) &
             + to%force
-      before = left
-      left = norm2(reduce(scene%system%structure%map, psi))
-      converged = left <= scene%system%tolerance*reference
-      converged = converged .or. (left <= most_round_off*reference .and. left >= 0.5_wp*before)
-      converged = converged .and. norm2(delta) <= scene%system%tolerance*motion
-      converged = converged .or. .not. (motion > 0.0_wp .or. reference > 0.0_wp)
-   end function has_converged
+      progress%left = norm2(reduce(scene%system%structure%map, psi))
+      progress%correction = norm2(delta)
+      small = progress%correction <= tolerance*motion
+      small = small .or. (progress%correction >= 0.5_wp*before%correction .and. &
+            progress%to_displacement*progress%correction <= tolerance*norm2(to%motion%d))
+      converged = progress%left <= tolerance*progress%reference
+      converged = converged .or. (progress%left <= most_round_off*progress%reference .and. &
+            progress%left >= 0.5_wp*before%left)
+      converged = converged .and. small
+      converged = converged .or. .not. (motion > 0.0_wp .or. progress%reference > 0.0_wp)
+   end subroutine judge
 
    subroutine not_converged(scene, t, error)
       type(scene_type), intent(in) :: scene
@@ -174,7 +191,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       type(contact_step_type) :: step
       real(wp), dimension(size(from%motion%d)) :: fixed, psi, delta
-      real(wp) :: reference, left
+      type(progress_type) :: progress
       logical :: converged
       integer :: iteration
 
@@ -187,8 +204,6 @@ contains
       fixed = fixed_force(scene%system, from%motion, to%motion)
       call place_rows(scene%rows, scene%geometry, scene%system%structure%map, from%motion, &
             to%motion, huge(1.0_wp))
-      reference = 0.0_wp
-      left = huge(left)
       do iteration = 1, scene%system%max_iterations
          if (iteration == 1 .and. .not. scene%system%structure%is_linear) then
             psi = first_residual(scene%system, fixed, from%motion, to%motion%d)
@@ -208,9 +223,10 @@ contains
          if (converged) exit
          call place_rows(scene%rows, scene%geometry, scene%system%structure%map, from%motion, &
                to%motion, huge(1.0_wp))
-         reference = max(reference, norm2(psi), norm2(fixed))
-         converged = has_converged(scene, fixed, from, to, delta, reference, left)
-         call record_residual(scene, iteration, left/max(reference, tiny(1.0_wp)))
+         progress%reference = max(progress%reference, norm2(psi), norm2(fixed))
+         call judge(scene, fixed, from, to, delta, progress, converged)
+         call record_residual(scene, iteration, &
+               progress%left/max(progress%reference, tiny(1.0_wp)))
          if (converged) exit
       end do
       to%touching = to%lambda > 0.0_wp

@@ -66,7 +66,7 @@ contains
    !> to wait longer the next time.
    pure subroutine halve(self, dt, smooth)
       type(ladder_type), intent(inout) :: self
-      real(wp), value :: dt                      !! what was tried; a copy: it may be the ladder's own
+      real(wp), value :: dt                      !! what was tried (a copy: self%dt)
       logical, intent(in) :: smooth              !! nothing happened in it
 
       if (smooth .and. self%n_since >= 0) self%n_needed = min(2*self%n_needed, most_needed)

@@ -129,7 +129,27 @@ def check_strain(checks):
     checks.at_most(counts.max(), 6, 'CPE4: iterations of an increment')
 
 
+def check_rest(checks, kind):
+    """Beyond yield in a static step, then at rest in a dynamic one: its accelerations are round-off."""
+    mesh = Mesh(1, 1, 4)
+    cards = ('*BOUNDARY\n' + ''.join(f'{p + 1}, 2\n' for p in mesh.at(t=0))
+             + ''.join(f'{p + 1}, 1\n' for p in mesh.at(s=0)))
+    pull = '*BOUNDARY\n' + ''.join(f'{p + 1}, 2, 2, 0.005\n' for p in mesh.at(t=1))
+    text = (mesh.text(kind) + material(E, NU, 7.8e-9, more=PLASTIC.format('ISOTROPIC')) + cards
+            + step('STATIC', '0.1, 1', pull, '*EL PRINT\nS\n*NODE PRINT\nU\n*ENERGY PRINT\n')
+            + step('DYNAMIC, DIRECT', '0.001, 0.1', '', ''))
+    run = run_deck(text)
+    t = run['history/time']
+    checks.at_most(abs(t[-1] - 1.1), 1e-9, f'{kind}: the dynamic step reaches its end')
+    stress = run['history/element_1/S22'][t >= 1]
+    checks.close(stress, np.full(len(stress), stress[0]), 1e-9 * YIELD, f'{kind}: stress at rest')
+    checks.at_most(np.max(run['energy/kinetic']) / np.max(run['energy/external_work']), 1e-20,
+                   f'{kind}: kinetic energy at rest')
+
+
 checks = Checks()
+for kind in ('CPE4', 'CPE4R'):
+    check_rest(checks, kind)
 for kind in ('CPS4', 'CAX4', 'CPS8', 'CPS3', 'CPS4R', 'CAX8R'):
     for law in ('ISOTROPIC', 'KINEMATIC'):
         check_uniaxial(checks, kind, law)
