@@ -138,8 +138,8 @@ contains
 
    !> Newton's method has converged when both the correction and the residual are small, or have
    !> come down to round-off: then they fall no further. Nearly incompressible solids have such
-   !> round-off of the residual above the tolerance; under stress at rest the acceleration is nothing
-   !> else, and its correction is measured by the displacements.
+   !> round-off of the residual above the tolerance; under stress at rest the acceleration is
+   !> nothing else, and its correction is measured by the displacements.
    subroutine judge(scene, fixed, from, to, delta, progress, converged)
       type(scene_type), intent(inout) :: scene
       real(wp), intent(in) :: fixed(:), delta(:)
