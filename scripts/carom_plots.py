@@ -143,9 +143,9 @@ def curve_style(number):
     return {"color": COLOURS[number % len(COLOURS)], "linestyle": DASHES[number % len(DASHES)]}
 
 
-def legend_beside(axes):
-    """A legend to the right of the axes, where it hides nothing; none of a single curve."""
-    if len(axes.get_legend_handles_labels()[1]) > 1:
+def legend_beside(axes, least=2):
+    """A legend to the right of the axes, where it hides nothing, of so many entries at least."""
+    if len(axes.get_legend_handles_labels()[1]) >= least:
         axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
 
 

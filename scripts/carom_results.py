@@ -46,10 +46,7 @@ class Result:
         self.path = str(path)
         if not os.path.isfile(self.path):
             raise MissingError(f"no result file '{self.path}'")
-        try:  # without a lock, so that a run that still goes on can be looked at
-            self.file = h5py.File(self.path, "r", locking=False)
-        except OSError as error:
-            raise ScriptError(f"cannot read '{self.path}' as an HDF5 file: {error}") from None
+        self.file = opened(self.path)
 
     def __enter__(self):
         return self
@@ -193,7 +190,7 @@ class Result:
         if item is None:
             return ""
         start = item.id.get_offset()
-        if start is None:
+        if start is None or not hasattr(os, "pread"):
             return heading_of(self.deck)
         length = min(item.id.get_storage_size(), 1 << 16)  # the head of what may be long
         head = os.pread(self.file.id.get_vfd_handle(), length, start)
@@ -207,6 +204,17 @@ class Result:
     def to_pandas(self, group="history"):
         """A table of the file, "history", "energy", "events", ..., as a pandas.DataFrame."""
         return (self.events if group == "events" else self.table(group)).to_pandas()
+
+
+def opened(path):
+    """An HDF5 file without a lock, so that a run that still goes on can be looked at; with one where
+    this process has opened the file with one before."""
+    for locking in (False, None):
+        try:
+            return h5py.File(path, "r", locking=locking)
+        except OSError as error:
+            said = error
+    raise ScriptError(f"cannot read '{path}' as an HDF5 file: {said}")
 
 
 def heading_of(deck):

@@ -188,7 +188,7 @@ def draw(result, comparison):
     mark_events(below, result.events, time[0], time[-1])
     above.set_ylabel(comparison.quantity)
     legend_beside(above)
-    legend_beside(below)
+    legend_beside(below, 1)
     below.set_ylabel(f"error of the\n{comparison.quantity}")
     below.set_xlabel("time")
     below.margins(x=0.01)

@@ -161,7 +161,7 @@ class Drawing:
         bar = self.figure.colorbar(drawn, ax=self.axes, shrink=0.8, aspect=30,
                                    location="bottom" if self.flat else "right")
         bar.set_label(axis_label(name) + ("" if point is not None else ", mean of each element"))
-        self.extremes = float(shown.min()), float(shown.max())
+        self.extremes = float(shown.min()) + 0.0, float(shown.max()) + 0.0
 
     def paint(self, kind, cell, point, style):
         """Solids of one type in the colours of a field."""
