@@ -29,12 +29,21 @@ _carom() {
    local command=${COMP_WORDS[1]} words='' line
    COMPREPLY=()
    if ((COMP_CWORD == 1)); then
-      COMPREPLY=($(compgen -W 'run check --version --help' -- "$current"))
+      COMPREPLY=($(compgen -W 'run check help --version --help' -- "$current"))
       return
    fi
    case $command in
    run) words='-o --define --threads --quiet --overwrite --restart --memory --time-limit' ;;
    check) words='--define --memory' ;;
+   help)
+      if ((COMP_CWORD == 2)); then
+         words=$("$1" help 2>/dev/null | sed -n 's/^  \*\([A-Z ]*[A-Z]\)  .*/\1/p')
+         local IFS=$'\n'
+         COMPREPLY=($(compgen -W "$words" -- "${current^^}"))
+         COMPREPLY=("${COMPREPLY[@]// /\\ }")
+      fi
+      return
+      ;;
    *) return ;;
    esac
    case $before in
