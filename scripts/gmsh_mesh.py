@@ -105,7 +105,7 @@ class PlaneMesh:
             n = len(nodes) if len(nodes) < 5 else len(nodes) // 2
             x, y = self.x[nodes[:n]].T
             if np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)) < 0:
-                self.elements[i] = [nodes[0], *nodes[n - 1 : 0 : -1], *nodes[: n - 1 : -1][: len(nodes) - n]]
+                self.elements[i] = [nodes[0], *nodes[n - 1 : 0 : -1], *nodes[: n - 1 : -1]]
                 self.turned += 1
 
     def find_sides(self):
@@ -125,6 +125,10 @@ class PlaneMesh:
     def outline(self):
         """All sides with an element on one side only."""
         return sorted(sides[0] for sides in self.sides.values() if len(sides) == 1)
+
+    def outline_name(self):
+        """The name of the surface of all sides."""
+        return "OUTLINE" if len(self.areas) > 1 else f"{next(iter(self.areas))}_OUTLINE"
 
     def split(self, name):
         """Opens a crack along a straight curve inside the body: its nodes but the two ends are
@@ -179,8 +183,7 @@ def cards(mesh, kind, first_node=1, first_element=1, heading=""):
     for name, nodes in mesh.points.items():
         lines += set_of_nodes(name, sorted(nodes), first_node)
     if not mesh.curves:
-        name = "OUTLINE" if len(mesh.areas) > 1 else f"{next(iter(mesh.areas))}_OUTLINE"
-        lines += surface(name, mesh.outline(), first_element)
+        lines += surface(mesh.outline_name(), mesh.outline(), first_element)
     return "\n".join(lines) + "\n"
 
 

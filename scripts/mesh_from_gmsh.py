@@ -161,14 +161,18 @@ def report(mesh, options):
         sides = len(mesh.surface(name))
         print(f"  NSET {name}" + (f", SURFACE {name}: {sides} sides" if sides
                                   else ": inside the body, no surface"))
+    if not mesh.curves:
+        print(f"  SURFACE {mesh.outline_name()}: {len(mesh.outline())} sides")
     for name in mesh.points:
         print(f"  NSET {name}")
     if mesh.turned:
         print(f"  {mesh.turned} elements ran clockwise and were turned")
 
 
-def main():
-    options = parse(sys.argv[1:])
+def main(arguments=None):
+    """Does what the words of the command line say; the exit status."""
+    words = sys.argv[1:] if arguments is None else arguments
+    options = parse(words)
     try:
         gmsh = load_gmsh()
         gmsh.initialize(["gmsh"], readConfigFiles=False, interruptible=False)
@@ -177,7 +181,6 @@ def main():
         finally:
             version = gmsh.option.getString("General.Version")
             gmsh.finalize()
-        words = sys.argv[1:]
         heading = f"gmsh {version}: mesh_from_gmsh.py {' '.join(words)}"
         text = cards(mesh, options.type, options.first_node, options.first_element, heading)
         Path(options.output).write_text(text, encoding="utf-8")
