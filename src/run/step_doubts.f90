@@ -17,7 +17,8 @@ module step_doubts
 
    !> Increments in the longest period or in a contact below which neither is resolved, and what is
    !> advised; the trapezoidal rule lengthens periods by 0.8 and 0.13 %.
-   real(wp), parameter :: least_increments = 20.0_wp, good_increments = 50.0_wp
+   real(wp), parameter :: least_increments = 20.0_wp, least_of_contact = 25.0_wp, &
+         good_increments = 50.0_wp
    !> With ORDER=4 so many times fewer do.
    real(wp), parameter :: of_fourth_order = 4.0_wp
 
@@ -58,7 +59,7 @@ contains
                if (outlooks(p)%body == 0 .or. outlooks(p)%first == 0) cycle
                shortest = min(shortest, outlooks(p)%duration)
             end do
-            if (shortest < least_increments*dt) then
+            if (shortest < least_of_contact*dt) then
                call remark('a contact that lasts about 2 L / c = ', shortest)
                return
             end if
