@@ -34,7 +34,7 @@ _carom() {
    fi
    case $command in
    run) words='-o --define --threads --quiet --overwrite --restart --memory --time-limit' ;;
-   check) words='--define --memory' ;;
+   check) words='--explain --define --memory' ;;
    *) return ;;
    esac
    case $before in

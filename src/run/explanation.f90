@@ -63,7 +63,7 @@ contains
 
       associate (model => simulation%model, structure => simulation%scene%system%structure, &
             state => simulation%motion%motion)
-         if (len_trim(model%heading) > 0) call self%add('', trim(model%heading))
+         if (len_trim(model%heading) > 0) call self%add('deck', trim(model%heading))
          box = maxval(model%nodes%x(:, :model%nodes%n), dim=2) &
                - minval(model%nodes%x(:, :model%nodes%n), dim=2)
          call self%add('model', plural(model%nodes%n, 'node')//', ' &
@@ -185,8 +185,9 @@ contains
          call self%add('material', text)
          extent = size_of(bodies, waves%body)
          call self%add('', 'a wave takes '//short(extent/c)//' through the body ('//short(extent) &
-               //'), '//short(waves%length/c)//' through the smallest element (' &
-               //short(waves%length)//', '//to_text(model%elements%id(waves%shortest))//')')
+               //'), '//short(waves%length/c)//' through element ' &
+               //to_text(model%elements%id(waves%shortest))//', the smallest (' &
+               //short(waves%length)//')')
       end associate
    end subroutine explain_waves
 

@@ -127,9 +127,10 @@ contains
       character(len=:), allocatable :: text
       real(wp) :: own
 
+      if (shortest_time(bodies) < huge(1.0_wp)) call self%add('', 'Courant number ' &
+            //to_text(step%dt/shortest_time(bodies), 3)//' (step / time of a wave through ' &
+            //'the smallest element)')
       text = ''
-      if (shortest_time(bodies) < huge(1.0_wp)) text = 'Courant number ' &
-            //to_text(step%dt/shortest_time(bodies), 3)//' (step / time through smallest element); '
       associate (structure => simulation%scene%system%structure, &
             explicit => simulation%critical(scheme_explicit)%step)
          if (explicit < huge(1.0_wp)) text = text//'critical step '//short(explicit) &
@@ -169,7 +170,7 @@ contains
       type(outlook_type), intent(in) :: outlooks(:)
 
       if (.not. step%direct) return
-      if (shortest_contact(outlooks) < huge(1.0_wp)) call self%add('', 'a contact of ' &
+      if (shortest_contact(outlooks) < huge(1.0_wp)) call self%add('', 'a hit of ' &
             //short(shortest_contact(outlooks))//' takes '//to_text(shortest_contact(outlooks) &
             /step%dt, 3)//' increments')
    end subroutine explain_contact
