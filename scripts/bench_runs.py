@@ -7,7 +7,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from carom_results import ScriptError
+from carom_script import ScriptError
 
 FEWEST_STEPS = 10
 RUN_LIMIT = 600.0         # seconds that a run may take

@@ -5,7 +5,8 @@ program carom
    use, intrinsic :: iso_c_binding, only: c_int
    use errors, only: error_type, status_done, status_interrupted
    use command_line, only: command_type, read_command, usage_text, &
-         command_run, command_check, command_version
+         command_run, command_check, command_version, command_reference
+   use deck_help, only: print_help
    use program_version, only: version_text
    use simulation, only: run_deck
    use deck_check, only: check_deck
@@ -43,6 +44,8 @@ program carom
          call run_deck(command, error)
       case (command_check)
          call check_deck(command, error)
+      case (command_reference)
+         call print_help(command%topic, error)
       case (command_version)
          write (output_unit, '(a)') 'carom '//version_text()
       case default
