@@ -58,11 +58,11 @@ def completed(folder, *words):
     return set(output('bash', '-c', script, cwd=folder).split())
 
 
-def check_completion(commands, scratch):
+def check_completion(program, commands, scratch):
     """Commands, options of each, and the files and names that stand behind options."""
     same(completed(scratch, 'carom', ''), set(commands), 'commands in the completion')
     for command, options in commands.items():
-        if not command.startswith('-'):
+        if options:
             same(completed(scratch, 'carom', command, '-'), options, f'options of {command} in the completion')
     folder = scratch / 'decks'
     (folder / 'more').mkdir(parents=True)
@@ -77,6 +77,10 @@ def check_completion(commands, scratch):
     expect(results == {'old.h5', 'c.vtkhdf', 'more'}, f'results behind --restart: {results}')
     names = completed(folder, 'carom', 'run', 'b.inp', '--define', '')
     expect(names == {'dt=', 'end=', 'e='}, f'the parameters of the deck behind --define: {names}')
+    cards = completed(folder, str(program), 'help', 'CONT')
+    expect(cards == {'contact'}, f'cards behind help: {cards}')
+    cards = completed(folder, str(program), 'help', 'contact', '')
+    expect(cards == {'file', 'output', 'pair', 'print'}, f'their second words: {cards}')
     expect('1' in completed(folder, 'carom', 'run', 'b.inp', '--threads', ''), 'threads')
     expect(completed(folder, 'carom', 'run', 'b.inp', '--time-limit', '') == set(), 'no file as a time')
 
@@ -89,7 +93,7 @@ def check_man_page(commands, help_text):
     same(set(OPTION.findall(plain)), every, 'options in the man page')
     for command in commands:
         if not command.startswith('-'):
-            expect(f'.B carom {command}' in plain and re.search(rf'^\.BI? (?:")?{command}\b', plain, re.M),
+            expect(f'.B carom {command}' in plain and re.search(rf'^\.B[IR]? {command}\b', plain, re.M),
                    f'the man page has {command} in its synopsis and among the commands')
     for status, word in re.findall(r'(\d) (\w+)', help_text[help_text.index('exit status:'):]):
         section = plain[plain.index('.SH EXIT STATUS'):plain.index('.SH ENVIRONMENT')]
@@ -189,7 +193,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix='carom_packaging_') as name:
         scratch = Path(name)
         check_versions(program)
-        check_completion(commands, scratch)
+        check_completion(program, commands, scratch)
         check_man_page(commands, help_text)
         check_installed(program, build, cmake, scratch)
         check_source_archive(program, build, cpack, scratch)

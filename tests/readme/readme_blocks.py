@@ -3,12 +3,13 @@
 A block is fenced by ``` or indented by four blanks after an empty line. Comments in front of it,
 which a page does not show, say what cannot be seen from its lines:
 
-    <!-- status 2 -->                               the last command of the block ends so
+    <!-- status 2 -->                               the last command of the block ends so; 5 0: the last two
     <!-- prints: carom check input/a/a.inp -->      the block is what this command prints
     <!-- output of the block before -->             the block is what the commands there print
     <!-- cards for input/a/a.inp -->                a fragment, sound when put into this deck
     <!-- with input/a/a.inp changed: OLD => NEW --> first change the copy of this file so
     <!-- tested by tests/a/b.py -->                 that test runs it
+    <!-- lines of input/a/a.inp -->                 the first column of the table below quotes this deck, card by card
 """
 import re
 
@@ -57,6 +58,13 @@ def is_command(line):
     return bool(found) and (found['name'] is None or found['name'] in PROGRAMS)
 
 
+def remark_column(line):
+    """Where the explanation of a command begins in its line, or None."""
+    command = without_remark(line)
+    rest = line[line.index(command) + len(command):]
+    return len(line) - len(rest.lstrip()) if rest.strip() else None
+
+
 def without_remark(line):
     """A command line without what stands behind it as an explanation: after ` # `, or after two blanks."""
     line = line[2:] if line.startswith('$ ') else line
@@ -71,19 +79,22 @@ def without_remark(line):
 def split_commands(lines):
     """The commands of a block, each with the lines that stand below it: what it prints."""
     commands = []
-    joined = None
+    joined = column = None
     for line in lines:
         if joined is not None:
             joined += ' ' + line.strip()
         elif is_command(line):
             joined = line
         elif commands:
+            if column is not None and len(line) - len(line.lstrip()) == column:
+                continue
             if line.strip() or commands[-1][1]:
                 commands[-1][1].append(line)
             continue
         if joined.endswith('\\'):
             joined = joined[:-1].rstrip()
             continue
+        column = remark_column(joined)
         commands.append((without_remark(joined), []))
         joined = None
     return commands
@@ -120,6 +131,22 @@ def read_blocks(text):
     return [block for block in blocks if any(part.strip() for part in block.lines)]
 
 
+def table_lines(text):
+    """(line number, deck, lines it must have) of each table that quotes a deck."""
+    found = []
+    lines = text.split('\n')
+    for i, line in enumerate(lines):
+        quoted = re.match(r'<!-- lines of (\S+) -->', line)
+        if quoted:
+            rows = []
+            for row in lines[i + 3:]:
+                if not row.startswith('|'):
+                    break
+                rows += re.findall(r'`([^`]+)`', row.split(' | ')[0])
+            found.append((i + 1, quoted[1], rows))
+    return found
+
+
 def begins_block(lines, i):
     """Indented lines are a block only after an empty line, a heading or a comment, not within a list."""
     if i and lines[i - 1].strip() and not lines[i - 1].lstrip().startswith('<!--'):
@@ -135,6 +162,7 @@ def inline_commands(text):
         if line.startswith(('    ', '```')):
             continue
         for span in re.findall(r'`([^`]+)`', line):
-            if ' ' in span.strip() and is_command(span) and not re.search(r'[…<>]|\.\.\.', span):
+            if ' ' in span.strip() and is_command(span) \
+                    and not re.search(r'[…<>]|\.\.\.|^kill -\w+$|\b(DECK|CARD)\b', span):
                 found.append((number, span))
     return found

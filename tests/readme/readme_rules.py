@@ -20,9 +20,10 @@ INSTEAD = [
     (r'^cmake --preset (\w+)$', r'PRESET \1', 'a build: this test runs in one'),
     (r'^cmake --install build --prefix (\S+)$', r'cmake --install BUILD --prefix \1',
      'the build at hand in the place of build/'),
-    (r'^mpirun (-n \d+) build/carom run (\S+)$', r'OPTIONS -',
-     'needs a build with MPI, where solve_by_ranks runs it'),
+    (r'^mpirun -n \d+ carom run (\S+)$', r'carom check \1', 'needs a build with MPI: solve_by_ranks runs it there'),
 ]
 
 # (README, pattern of a heading, test that covers the blocks below it)
-DELEGATED = []
+DELEGATED = [
+    ('input/README.md', r'', 'tests/reference/reference.py'),
+]
