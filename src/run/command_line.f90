@@ -7,10 +7,11 @@ module command_line
    use errors, only: error_type, new_error, status_usage
    use memory_shortage, only: check_allocation
    use deck_reader, only: definition_type
+   use program_version, only: version_text
    implicit none
    private
 
-   public :: command_type, read_command, usage_text, version_text
+   public :: command_type, read_command, usage_text
    public :: command_run, command_check, command_version, command_help, command_reference
 
    integer, parameter :: command_run = 1
@@ -18,8 +19,6 @@ module command_line
    integer, parameter :: command_version = 3
    integer, parameter :: command_help = 4
    integer, parameter :: command_reference = 5
-
-   character(len=*), parameter :: version_text = '0.1.0'
 
    integer, parameter :: most_threads = 1024
 
@@ -45,7 +44,7 @@ contains
       character(len=:), allocatable :: text
       character(len=1), parameter :: nl = new_line('a')
 
-      text = 'carom '//version_text//': structural dynamics with impact'//nl//nl// &
+      text = 'carom '//version_text()//': structural dynamics with impact'//nl//nl// &
             'usage: carom run DECK [-o OUT.h5] [--define NAME=VALUE]... [--threads N] [--quiet]' &
             //nl// &
             '                      [--overwrite] [--restart OLD.h5] [--memory SIZE]'//nl// &
