@@ -14,6 +14,7 @@ from concurrent.futures import ALL_COMPLETED, FIRST_COMPLETED, ThreadPoolExecuto
 from pathlib import Path
 
 import gallery_bodies as bodies
+import gallery_frames as frames
 import gallery_masses as masses
 from carom_deck import Deck, find_carom, run_deck
 from carom_script import ScriptError, run
@@ -50,10 +51,12 @@ CASES = {
     "pounding_frame": Case(masses.draw_pounding_frame, "frames"),
     "cantilever": Case(bodies.draw_cantilever, "cantilever", "modes"),
     "thick_cylinder": Case(bodies.draw_thick_cylinder, "elastic_cax8", "plastic_cax4"),
+    "from_gmsh": Case(frames.draw_from_gmsh, "ring"),
+    "from_freecad": Case(frames.draw_from_freecad, "FEMMeshGmsh", "impact"),
     "hertz": Case(bodies.draw_hertz, "nonmatching", "nonmatching_nodes"),
-    "block": Case(bodies.draw_block, "block", edit=at_anchored_events),
-    "dropped_disc": Case(bodies.draw_dropped_disc, "q4", "q4_fictitious"),
-    "two_discs": Case(bodies.draw_two_discs, "oblique"),
+    "block": Case(frames.draw_block, "block", edit=at_anchored_events),
+    "dropped_disc": Case(frames.draw_dropped_disc, "q4", "q4_fictitious"),
+    "two_discs": Case(frames.draw_two_discs, "oblique"),
     "sliding_block": Case(bodies.draw_sliding_block, "sliding", "slope"),
     "oblique_ball": Case(bodies.draw_oblique_ball, "point", "elastic"),
     "crack": Case(bodies.draw_crack, "slap"),

@@ -7,14 +7,9 @@ from contact_solutions import (
 from exact_solutions import bar_contact_force
 from gallery_style import (
     BLACK, BLUE, EXACT, GREEN, ORANGE, PURPLE, SIGNED, SPEED, STRESS, bar, body, figure,
-    ground, halves, key_below, mosaic, nearest, note, window,
+    ground, halves, key_below, lines_of, mosaic, nearest, note, window,
 )
 from plot_contact import surfaces
-
-
-def lines_of(mesh):
-    """The lower and upper corner of the points."""
-    return mesh.points[:, :2].min(axis=0), mesh.points[:, :2].max(axis=0)
 
 
 def draw_cantilever(runs):
@@ -150,84 +145,6 @@ def draw_elastic_strip(runs):
     note(axes["mesh"], place[:, 0].max() - 0.2, np.mean([low[1], high[1]]), "time 0.67", ha="right",
          va="center")
     key_below(made, axes["whole"], 3)
-    return made
-
-
-def before_at_after(made, axes, mesh, times, field, limits, words, reach, colours=STRESS, plane=None):
-    """Three frames side by side in the same window and colours."""
-    low, high = reach
-    for axis, wanted in zip(axes, times):
-        frame = nearest(mesh.times, wanted)
-        painted = body(axis, mesh, frame, field, limits, 1.0, colours, 0.15)
-        window(axis, low, high, f"time {mesh.times[frame]:.3g}")
-        if plane is not None:
-            ground(axis, plane, low[0], high[0], plane - low[1])
-    return bar(made, painted, axes, words, aspect=14)
-
-
-def draw_dropped_disc(runs):
-    """Before, at and after; contact force by two methods."""
-    made, axes = mosaic("An elastic disc is dropped on a plane", [["a", "b", "c"], ["f"] * 3],
-                        height_ratios=(1.25, 1))
-    mesh = runs["q4"].mesh
-    low, high = lines_of(mesh)
-    plane = low[1] - 0.01
-    before_at_after(made, [axes[k] for k in "abc"], mesh, (0.02, 0.32, 1.0), "MISES", (0, 12),
-                    "Mises stress", ((low[0] - 0.1, plane - 0.18), (high[0] + 0.1, high[1] + 0.22)),
-                    plane=plane)
-    for name, colour, line, words in (("q4_fictitious", ORANGE, "--", "fictitious force"),
-                                      ("q4", BLUE, "-", "transformation")):
-        run = runs[name]
-        axes["f"].plot(run.time, np.abs(run.pair.CF2), color=colour, ls=line, label=words)
-    axes["f"].set(xlabel="time", ylabel="contact force", xlim=(0, 1.1), ylim=(-0.3, 9.5))
-    axes["f"].legend(loc="upper right")
-    return made
-
-
-def draw_two_discs(runs):
-    """An oblique blow with friction."""
-    made, axes = mosaic("A disc hits a stiffer one beside its middle, μ = 0.2",
-                        [["a", "b", "c"], ["f"] * 3], height_ratios=(1.6, 1))
-    run = runs["oblique"]
-    mesh = run.mesh
-    last = nearest(mesh.times, 1.2)
-    places = np.concatenate([mesh.place(f, 1.0) for f in (0, last)])
-    low, high = places.min(axis=0) - 0.08, places.max(axis=0) + 0.08
-    number, time = run.pair.CNUM, run.time
-    middle = time[number > 0].mean()
-    before_at_after(made, [axes[k] for k in "abc"], mesh, (0, middle, 1.2), "MISES", (0, 8),
-                    "Mises stress", (low, high))
-    force, push = np.abs(run.pair.CF1), np.abs(run.pair.CF2)
-    axes["f"].plot(time, force, color=BLUE, label="along x")
-    axes["f"].plot(time, push, color=ORANGE, ls="--", label="along y")
-    axes["f"].set(xlabel="time", ylabel="contact force", xlim=(0, 1.2),
-                  ylim=(-0.03 * force.max(), 1.15 * force.max()))
-    axes["f"].legend(loc="upper right")
-    return made
-
-
-def draw_block(runs):
-    """A pressure wave goes to the free side and back."""
-    made, axes = mosaic("A block is thrown at a wall", [["a", "b", "c"], ["f"] * 3],
-                        height_ratios=(1.25, 1))
-    run = runs["block"]
-    mesh = run.mesh
-    low, high = lines_of(mesh)
-    dt = run.time[1]
-    before_at_after(made, [axes[k] for k in "abc"], mesh, (0, 30 * dt, 100 * dt), "V1", (-1, 1),
-                    "velocity V1", ((low[0] - 0.12, low[1] - 0.05), (high[0] + 0.05, high[1] + 0.05)),
-                    SPEED)
-    for k in "abc":
-        axes[k].axvspan(low[0] - 0.12, low[0] - 5.4 * dt, facecolor="0.87", edgecolor="0.6",
-                        hatch="//", lw=0, zorder=0)
-    axes["f"].plot(1000 * run.time, np.abs(run.pair.CF1), color=BLUE, label="carom")
-    speed = 1 / 40 / dt
-    axes["f"].plot([0, 5.4e3 * dt, 5.4e3 * dt, 85.4e3 * dt, 85.4e3 * dt, 75],
-                   [0, 0, speed, speed, 0, 0], **EXACT,
-                   label="plane wave ρ c v")
-    axes["f"].set(xlabel="1000 × time", ylabel="contact force", xlim=(0, 75),
-                  ylim=(-2, 1.25 * max(speed, np.abs(run.pair.CF1).max())))
-    axes["f"].legend(loc="lower center")
     return made
 
 

@@ -109,6 +109,11 @@ def body(axes, mesh, frame, field=None, limits=None, scale=1.0, colours=STRESS, 
     return painted
 
 
+def lines_of(mesh):
+    """The lower and upper corner of the points."""
+    return mesh.points[:, :2].min(axis=0), mesh.points[:, :2].max(axis=0)
+
+
 def window(axes, low, high, title=None):
     """Equal scales, the range that is shown, no ticks: for bodies whose size the text gives."""
     axes.set_xlim(low[0], high[0])
