@@ -8,7 +8,7 @@ module card_rules
    implicit none
    private
 
-   public :: check_keyword, check_card, usage_of, name_of, is_note_card
+   public :: check_keyword, check_card, usage_of, name_of, is_note_card, n_rules, rule_text
 
    integer, parameter :: rule_length = 200
 
@@ -71,13 +71,23 @@ module card_rules
          'RESTART;any;WRITE/FREQUENCY=/OVERLAY/READ/STEP=/INC=;-', &
          'PREPRINT;note;;text', &
          'PRINT;note;;text', &
-         'OUTPUT;note;;text', &
+         'OUTPUT;note;COMPRESS?;text', &
          'NODE OUTPUT;note;;text', &
          'ELEMENT OUTPUT;note;;text', &
          'CONTACT OUTPUT;note;;text', &
          'ENERGY OUTPUT;note;;text']
 
+   integer, parameter :: n_rules = size(rules)
+
 contains
+
+   !> A line of the list as it stands above.
+   pure function rule_text(rule) result(text)
+      integer, intent(in) :: rule
+      character(len=:), allocatable :: text
+
+      text = trim(rules(rule))
+   end function rule_text
 
    !> What a data line of a card holds.
    pure function usage_of(rule) result(usage)

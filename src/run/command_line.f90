@@ -7,18 +7,18 @@ module command_line
    use errors, only: error_type, new_error, status_usage
    use memory_shortage, only: check_allocation
    use deck_reader, only: definition_type
+   use program_version, only: version_text
    implicit none
    private
 
-   public :: command_type, read_command, usage_text, version_text
-   public :: command_run, command_check, command_version, command_help
+   public :: command_type, read_command, usage_text
+   public :: command_run, command_check, command_version, command_help, command_reference
 
    integer, parameter :: command_run = 1
    integer, parameter :: command_check = 2
    integer, parameter :: command_version = 3
    integer, parameter :: command_help = 4
-
-   character(len=*), parameter :: version_text = '0.1.0'
+   integer, parameter :: command_reference = 5
 
    integer, parameter :: most_threads = 1024
 
@@ -26,6 +26,7 @@ module command_line
    type :: command_type
       integer :: kind = command_help
       character(len=:), allocatable :: deck
+      character(len=:), allocatable :: topic           !! card to print the reference of, or blank
       character(len=:), allocatable :: output          !! result file
       type(definition_type), allocatable :: definitions(:)
       integer :: threads = 0                           !! 0: OMP_NUM_THREADS, else 1
@@ -43,16 +44,18 @@ contains
       character(len=:), allocatable :: text
       character(len=1), parameter :: nl = new_line('a')
 
-      text = 'carom '//version_text//': structural dynamics with impact'//nl//nl// &
+      text = 'carom '//version_text()//': structural dynamics with impact'//nl//nl// &
             'usage: carom run DECK [-o OUT.h5] [--define NAME=VALUE]... [--threads N] [--quiet]' &
             //nl// &
             '                      [--overwrite] [--restart OLD.h5] [--memory SIZE]'//nl// &
             '                      [--time-limit TIME]'//nl// &
             '       carom check DECK [--define NAME=VALUE]... [--memory SIZE]'//nl// &
+            '       carom help [CARD]'//nl// &
             '       carom --version | --help'//nl//nl// &
             '  run      computes the deck; writes OUT.h5, OUT.log and OUT.sta'//nl// &
             '           (default: beside the deck, with its name)'//nl// &
             '  check    reads the deck, builds the model and prints what a run would do'//nl// &
+            '  help     prints the deck reference of a card; without one the list of cards'//nl// &
             '  --define overrides a *PARAMETER of the deck'//nl// &
             '  --threads threads to work with (default: OMP_NUM_THREADS, else 1)'//nl// &
             '  --quiet  no progress on the terminal'//nl// &
@@ -78,6 +81,10 @@ contains
          command%kind = command_run
       case ('check')
          command%kind = command_check
+      case ('help')
+         command%kind = command_reference
+         call read_topic(command)
+         return
       case ('--version')
          command%kind = command_version
       case ('--help', '-h')
@@ -95,6 +102,18 @@ contains
       end do
       call complete(command, error)
    end subroutine read_command
+
+   !> All words behind `help`: a card's name may have two.
+   subroutine read_topic(command)
+      type(command_type), intent(inout) :: command
+      integer :: i
+
+      command%topic = ''
+      do i = 2, command_argument_count()
+         command%topic = command%topic//' '//argument(i)
+      end do
+      command%topic = trim(adjustl(command%topic))
+   end subroutine read_topic
 
    subroutine read_word(command, word, i, error)
       type(command_type), intent(inout) :: command
