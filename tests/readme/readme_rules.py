@@ -26,4 +26,6 @@ INSTEAD = [
 # (README, pattern of a heading, test that covers the blocks below it)
 DELEGATED = [
     ('input/README.md', r'', 'tests/reference/reference.py'),
+    ('src/README.md', r'(An element|A material|An impact method)$', 'tests/examples/build_examples.py'),
+    ('src/README.md', r'', 'tests/examples/check_source_map.py'),
 ]
