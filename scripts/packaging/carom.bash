@@ -34,7 +34,7 @@ _carom() {
    fi
    case $command in
    run) words='-o --define --threads --quiet --overwrite --restart --memory --time-limit' ;;
-   check) words='--define --memory' ;;
+   check) words='--explain --define --memory' ;;
    help)
       if ((COMP_CWORD == 2)); then
          words=$("$1" help 2>/dev/null | sed -n 's/^  \*\([A-Z ]*[A-Z]\)  .*/\1/p')
