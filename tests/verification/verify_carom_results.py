@@ -1,20 +1,16 @@
 """scripts/carom_results.py reads what h5py reads, by slices and blocks, says which card is missing, and
 reads the file of a run that goes on; conversions to pandas, meshio and pyvista, each with the package
 (or with a stand-in) and without it. Plots are looked at by verify_plots.py."""
-import contextlib
 import importlib.util
-import io
-import itertools
 import signal
 import subprocess
 import sys
-import textwrap
 import time
 import types
 
 import h5py
 import numpy as np
-from carom_case import INPUT, ROOT, Checks, run_deck, scratch_folder
+from carom_case import INPUT, Checks, run_deck, scratch_folder
 from result_decks import BARE, STRIP
 
 from carom_results import Result            # noqa: E402  (from scripts, where carom_case looks)
@@ -248,23 +244,6 @@ def read_modes():
         CHECKS.true(result.heading.startswith('Cantilever'), 'heading of an example')
 
 
-def read_as_in_the_readme():
-    """The example of README.md runs as it stands there."""
-    blocks = (ROOT / 'README.md').read_text().split('\n\n    from carom_results import Result\n')
-    CHECKS.true(len(blocks) == 2, 'README.md has one example')
-    lines = itertools.takewhile(lambda line: not line or line.startswith('    '),
-                                blocks[1].splitlines())
-    code = 'from carom_results import Result\n' + textwrap.dedent('\n'.join(lines))
-    path = run_deck(INPUT / 'sdof' / 'sdof.inp').path
-    said, found = io.StringIO(), {}
-    with contextlib.redirect_stdout(said):
-        exec(code.replace('out.h5', str(path)), found)   # noqa: S102  (our own text)
-    CHECKS.true(said.getvalue().startswith("One mass on a spring that hits a wall (m = k = 1) [1] "
-                                           "['BODY-WALL']\n"), 'it prints heading, nodes, contacts')
-    CHECKS.true(len(said.getvalue().splitlines()) == 2 + 5 + 501 and len(found['last']) == 100,
-                'an impact and a frame a line')
-
-
 def read_in_mid_run():
     """The file of a run that goes on."""
     folder = scratch_folder()
@@ -299,7 +278,6 @@ def main():
         missing(result)
         convert(result)
     read_modes()
-    read_as_in_the_readme()
     read_in_mid_run()
     CHECKS.finish()
 
