@@ -20,6 +20,9 @@ INSTEAD = [
     (r'^cmake --preset (\w+)$', r'PRESET \1', 'a build: this test runs in one'),
     (r'^cmake --install build --prefix (\S+)$', r'cmake --install BUILD --prefix \1',
      'the build at hand in the place of build/'),
+    (r'^gmsh (\S+\.geo) -2 -o (\S+)$', r'test -s \1 -a -s \2', 'gmsh is optional: verify_meshes makes this mesh anew'),
+    (r'^\S*python\S* scripts/mesh_from_gmsh\.py(.*)$', r'OPTIONS scripts/mesh_from_gmsh.py\1',
+     'gmsh is optional: verify_meshes runs it'),
     (r'^mpirun -n \d+ carom run (\S+)$', r'carom check \1', 'needs a build with MPI: solve_by_ranks runs it there'),
 ]
 
