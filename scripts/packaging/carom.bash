@@ -42,7 +42,7 @@ _carom() {
    fi
    case $command in
    run) options='-o --define --threads --quiet --overwrite --restart --memory --time-limit' ;;
-   check) options='--define --memory' ;;
+   check) options='--explain --define --memory' ;;
    help) before='help' ;;
    *) return ;;
    esac
