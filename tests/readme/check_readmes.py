@@ -105,13 +105,19 @@ class Page:
             status = status or int(self.said.count(f'"{words[1]}"') != 2)
         else:
             command = command.replace(' BUILD ', f' {self.shell.build} ')
-            folder = self.path.parent if (self.shell.folder / self.path.parent / words[0]).is_file() \
-                or re.match(r'make_\w+\.py', words[0]) else '.'
+            folder = self._folder(words)
             command = re.sub(r'^(make_\w+\.py)', r'python \1', command)
             command = re.sub(r'^(input/\S+\.py)', r'python \1', command)
             status, self.said = self.shell.run(command, folder)
         if status != wanted:
             self._fail(line, f'`{command}` ended with status {status}, not {wanted}:\n{self.said[-1500:]}')
+
+    def _folder(self, words):
+        """The folder of the page if the first file that a command names is found there only; else the top."""
+        for word in words[:3]:
+            if not word.startswith('-') and '/' not in word and (self.shell.folder / self.path.parent / word).is_file():
+                return self.path.parent if not (self.shell.folder / word).is_file() else '.'
+        return '.' if not words[1:] or not words[1].startswith('../../') else self.path.parent
 
     def _options(self, words):
         """A script that takes long: the options that the page gives it are those it has."""
