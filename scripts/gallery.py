@@ -6,18 +6,18 @@ a palette. Result files stay in a folder that is removed at the end, or in --res
 """
 
 import argparse
+import contextlib
 import io
 import os
-import sys
 import tempfile
-import time
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ALL_COMPLETED, FIRST_COMPLETED, ThreadPoolExecutor, wait
 from pathlib import Path
 
 import gallery_bodies as bodies
+import gallery_frames as frames
 import gallery_masses as masses
 from carom_deck import Deck, find_carom, run_deck
-from carom_results import Results, ScriptError, run
+from carom_script import ScriptError, run
 from gallery_style import STYLE, Run, plt
 from PIL import Image
 
@@ -51,41 +51,50 @@ CASES = {
     "pounding_frame": Case(masses.draw_pounding_frame, "frames"),
     "cantilever": Case(bodies.draw_cantilever, "cantilever", "modes"),
     "thick_cylinder": Case(bodies.draw_thick_cylinder, "elastic_cax8", "plastic_cax4"),
+    "from_gmsh": Case(frames.draw_from_gmsh, "ring"),
+    "from_freecad": Case(frames.draw_from_freecad, "FEMMeshGmsh", "impact"),
     "hertz": Case(bodies.draw_hertz, "nonmatching", "nonmatching_nodes"),
-    "block": Case(bodies.draw_block, "block", edit=at_anchored_events),
-    "dropped_disc": Case(bodies.draw_dropped_disc, "q4", "q4_fictitious"),
-    "two_discs": Case(bodies.draw_two_discs, "oblique"),
+    "block": Case(frames.draw_block, "block", edit=at_anchored_events),
+    "dropped_disc": Case(frames.draw_dropped_disc, "q4", "q4_fictitious"),
+    "two_discs": Case(frames.draw_two_discs, "oblique"),
     "sliding_block": Case(bodies.draw_sliding_block, "sliding", "slope"),
     "oblique_ball": Case(bodies.draw_oblique_ball, "point", "elastic"),
     "crack": Case(bodies.draw_crack, "slap"),
 }
+SLOW = "pounding_frame", "crack", "two_discs", "dropped_disc"
+
+
+def is_fresh(result, carom, name):
+    """Whether a result is younger than the program and all decks and meshes of its case."""
+    if not result.exists():
+        return False
+    made = result.stat().st_mtime
+    sources = [carom, *(INPUT / name).glob("*.in[cp]")]
+    return all(path.stat().st_mtime < made for path in sources)
 
 
 def compute(carom, name, deck, results):
-    """Runs a deck of a case, if its result is not there yet; the path of the result."""
+    """Runs a deck of a case, unless its result is there; the path of the result."""
     path = INPUT / name / f"{deck}.inp"
     result = results / f"{name}.{deck}.h5"
-    if not result.exists():
-        if CASES[name].edit:
-            edited = Deck.read(path)
-            CASES[name].edit(edited)
-            path = results / f"{name}.{deck}.inp"
-            edited.write(path)
-        done = run_deck(carom, path, result)
-        if done.status != 0:
-            raise ScriptError(f"{path}: carom ended with status {done.status}: {done.last_line}")
+    if is_fresh(result, carom, name):
+        return result
+    if CASES[name].edit:
+        edited = Deck.read(path)
+        CASES[name].edit(edited)
+        path = results / f"{name}.{deck}.inp"
+        edited.write(path)
+    done = run_deck(carom, path, result)
+    if done.status != 0:
+        raise ScriptError(f"{path}: carom ended with status {done.status}: {done.last_line}")
     return result
 
 
 def draw(name, paths):
     """The figure of a case, from the results of its decks."""
-    opened = {deck: Results(str(path)) for deck, path in paths.items()}
-    try:
-        with plt.rc_context(STYLE):
-            return CASES[name].draw({deck: Run(item) for deck, item in opened.items()})
-    finally:
-        for item in opened.values():
-            item.file.close()
+    with contextlib.ExitStack() as stack, plt.rc_context(STYLE):
+        return CASES[name].draw({deck: stack.enter_context(Run(path))
+                                 for deck, path in paths.items()})
 
 
 def save_small(figure, path):
@@ -111,14 +120,21 @@ def save_small(figure, path):
 
 
 def make(chosen, carom, results, place):
-    """Runs the decks of the cases, two at a time, and draws each case when its own are done."""
+    """Runs the decks of the cases, two at a time, the slow ones first; draws each case when its own
+    are done."""
     with ThreadPoolExecutor(max_workers=min(2, os.cpu_count() or 1)) as workers:
         runs = {name: {deck: workers.submit(compute, carom, name, deck, results)
-                       for deck in CASES[name].decks} for name in chosen}
-        for name in chosen:
-            path = place(name)
-            save_small(draw(name, {deck: run.result() for deck, run in runs[name].items()}), path)
-            print(os.path.relpath(path), flush=True)
+                       for deck in CASES[name].decks}
+                for name in sorted(chosen, key=lambda name: name not in SLOW)}
+        waiting = list(chosen)
+        while waiting:
+            wait([run for name in waiting for run in runs[name].values()],
+                 return_when=FIRST_COMPLETED if len(waiting) > 1 else ALL_COMPLETED)
+            for name in [n for n in waiting if all(run.done() for run in runs[n].values())]:
+                save_small(draw(name, {deck: run.result() for deck, run in runs[name].items()}),
+                           place(name))
+                print(os.path.relpath(place(name)), flush=True)
+                waiting.remove(name)
 
 
 def main():
@@ -138,7 +154,6 @@ def main():
     unknown = [name for name in given.cases if name not in CASES]
     if unknown:
         raise ScriptError(f"no such case: {unknown[0]}; there are: {', '.join(CASES)}")
-    begun = time.monotonic()
     if not given.write:
         os.makedirs(given.into, exist_ok=True)
 
@@ -149,7 +164,6 @@ def main():
         results = Path(given.results or scratch)
         results.mkdir(parents=True, exist_ok=True)
         make(given.cases or list(CASES), find_carom(given.carom), results, place)
-    print(f"{time.monotonic() - begun:.0f} s", file=sys.stderr)
 
 
 if __name__ == "__main__":

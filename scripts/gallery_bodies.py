@@ -7,14 +7,9 @@ from contact_solutions import (
 from exact_solutions import bar_contact_force
 from gallery_style import (
     BLACK, BLUE, EXACT, GREEN, ORANGE, PURPLE, SIGNED, SPEED, STRESS, bar, body, figure,
-    ground, halves, key_below, mosaic, nearest, note, window,
+    ground, halves, key_below, lines_of, mosaic, nearest, note, window,
 )
 from plot_contact import surfaces
-
-
-def lines_of(mesh):
-    """The lower and upper corner of the points."""
-    return mesh.points[:, :2].min(axis=0), mesh.points[:, :2].max(axis=0)
 
 
 def draw_cantilever(runs):
@@ -23,7 +18,7 @@ def draw_cantilever(runs):
                         [["s"] * 3, ["a", "b", "c"]], height_ratios=(1.15, 1))
     mesh, modes = runs["cantilever"].mesh, runs["modes"].mesh
     deflection = np.abs(mesh.values("Point", "U", 1)[:, 1]).max()
-    frequency = runs["modes"].file["frequency/frequency"][()]
+    frequency = runs["modes"].frequencies
     undeformed(axes["s"], mesh)
     painted = body(axes["s"], mesh, 1, "S11", (-6e5, 6e5), 1e4, SIGNED)
     window(axes["s"], (-0.03, -0.3), (1.06, 0.07),
@@ -94,7 +89,7 @@ def draw_strip(runs):
     end, height = begin + 2 / speed, speed * 0.01 * 0.05
     force = axes["force"]
     for name, colour, line in (("implicit", BLUE, "-"), ("explicit", ORANGE, "--")):
-        force.plot(runs[name].time, 1000 * np.abs(runs[name].owned("CF1")), color=colour, ls=line,
+        force.plot(runs[name].time, 1000 * np.abs(runs[name].pair.CF1), color=colour, ls=line,
                    label=name)
     t = np.linspace(-0.1, 1.31, 6001)
     force.plot(t, 1000 * np.where((t >= begin) & (t < end), height, 0), **EXACT, label="exact")
@@ -131,7 +126,7 @@ def draw_elastic_strip(runs):
     fine = np.linspace(0.3, 1.4, 6001)
     for axis in (axes["whole"], axes["plateau"]):
         for name, colour, line, words in looks:
-            axis.plot(runs[name].time, np.abs(runs[name].owned("CF1")), color=colour, ls=line,
+            axis.plot(runs[name].time, np.abs(runs[name].pair.CF1), color=colour, ls=line,
                       label=words, lw=1.6 if name in ("q4_fictitious", "q8") else 2.6)
         axis.plot(fine, bar_contact_force(fine)[0], **EXACT, label="exact")
         axis.set_xlabel("time")
@@ -150,84 +145,6 @@ def draw_elastic_strip(runs):
     note(axes["mesh"], place[:, 0].max() - 0.2, np.mean([low[1], high[1]]), "time 0.67", ha="right",
          va="center")
     key_below(made, axes["whole"], 3)
-    return made
-
-
-def before_at_after(made, axes, mesh, times, field, limits, words, reach, colours=STRESS, plane=None):
-    """Three frames side by side in the same window and colours."""
-    low, high = reach
-    for axis, wanted in zip(axes, times):
-        frame = nearest(mesh.times, wanted)
-        painted = body(axis, mesh, frame, field, limits, 1.0, colours, 0.15)
-        window(axis, low, high, f"time {mesh.times[frame]:.3g}")
-        if plane is not None:
-            ground(axis, plane, low[0], high[0], plane - low[1])
-    return bar(made, painted, axes, words, aspect=14)
-
-
-def draw_dropped_disc(runs):
-    """Before, at and after; contact force by two methods."""
-    made, axes = mosaic("An elastic disc is dropped on a plane", [["a", "b", "c"], ["f"] * 3],
-                        height_ratios=(1.25, 1))
-    mesh = runs["q4"].mesh
-    low, high = lines_of(mesh)
-    plane = low[1] - 0.01
-    before_at_after(made, [axes[k] for k in "abc"], mesh, (0.02, 0.32, 1.0), "MISES", (0, 12),
-                    "Mises stress", ((low[0] - 0.1, plane - 0.18), (high[0] + 0.1, high[1] + 0.22)),
-                    plane=plane)
-    for name, colour, line, words in (("q4_fictitious", ORANGE, "--", "fictitious force"),
-                                      ("q4", BLUE, "-", "transformation")):
-        run = runs[name]
-        axes["f"].plot(run.time, np.abs(run.owned("CF2")), color=colour, ls=line, label=words)
-    axes["f"].set(xlabel="time", ylabel="contact force", xlim=(0, 1.1), ylim=(-0.3, 9.5))
-    axes["f"].legend(loc="upper right")
-    return made
-
-
-def draw_two_discs(runs):
-    """An oblique blow with friction."""
-    made, axes = mosaic("A disc hits a stiffer one beside its middle, μ = 0.2",
-                        [["a", "b", "c"], ["f"] * 3], height_ratios=(1.6, 1))
-    run = runs["oblique"]
-    mesh = run.mesh
-    last = nearest(mesh.times, 1.2)
-    places = np.concatenate([mesh.place(f, 1.0) for f in (0, last)])
-    low, high = places.min(axis=0) - 0.08, places.max(axis=0) + 0.08
-    number, time = run.owned("CNUM"), run.time
-    middle = time[number > 0].mean()
-    before_at_after(made, [axes[k] for k in "abc"], mesh, (0, middle, 1.2), "MISES", (0, 8),
-                    "Mises stress", (low, high))
-    force, push = (np.abs(run.owned(name)) for name in ("CF1", "CF2"))
-    axes["f"].plot(time, force, color=BLUE, label="along x")
-    axes["f"].plot(time, push, color=ORANGE, ls="--", label="along y")
-    axes["f"].set(xlabel="time", ylabel="contact force", xlim=(0, 1.2),
-                  ylim=(-0.03 * force.max(), 1.15 * force.max()))
-    axes["f"].legend(loc="upper right")
-    return made
-
-
-def draw_block(runs):
-    """A pressure wave goes to the free side and back."""
-    made, axes = mosaic("A block is thrown at a wall", [["a", "b", "c"], ["f"] * 3],
-                        height_ratios=(1.25, 1))
-    run = runs["block"]
-    mesh = run.mesh
-    low, high = lines_of(mesh)
-    dt = run.time[1]
-    before_at_after(made, [axes[k] for k in "abc"], mesh, (0, 30 * dt, 100 * dt), "V1", (-1, 1),
-                    "velocity V1", ((low[0] - 0.12, low[1] - 0.05), (high[0] + 0.05, high[1] + 0.05)),
-                    SPEED)
-    for k in "abc":
-        axes[k].axvspan(low[0] - 0.12, low[0] - 5.4 * dt, facecolor="0.87", edgecolor="0.6",
-                        hatch="//", lw=0, zorder=0)
-    axes["f"].plot(1000 * run.time, np.abs(run.owned("CF1")), color=BLUE, label="carom")
-    speed = 1 / 40 / dt
-    axes["f"].plot([0, 5.4e3 * dt, 5.4e3 * dt, 85.4e3 * dt, 85.4e3 * dt, 75],
-                   [0, 0, speed, speed, 0, 0], **EXACT,
-                   label="plane wave ρ c v")
-    axes["f"].set(xlabel="1000 × time", ylabel="contact force", xlim=(0, 75),
-                  ylim=(-2, 1.25 * max(speed, np.abs(run.owned("CF1")).max())))
-    axes["f"].legend(loc="lower center")
     return made
 
 
@@ -278,11 +195,10 @@ def draw_sliding_block(runs):
     v = axes["v"]
     time = np.linspace(0, 2, 401)
     distance, stop = stopping(5.0, 0.3)
-    node = next(n for n in level.file["history"] if n.startswith("node_"))
-    v.plot(level.time, level.column(f"{node}/V1"), color=BLUE, lw=5, alpha=0.6,
+    v.plot(level.time, level.node(level.nodes[0]).V1, color=BLUE, lw=5, alpha=0.6,
            label="level plane, carom")
-    node = next(n for n in slope.file["history"] if n.startswith("node_"))
-    along = np.hypot(slope.column(f"{node}/V1"), slope.column(f"{node}/V2"))
+    seen = slope.node(slope.nodes[0])
+    along = np.hypot(seen.V1, seen.V2)
     v.plot(slope.time, along, color=ORANGE, lw=5, alpha=0.7, ls=(0, (1.5, 0.6)),
            label="slope of 30°, carom")
     v.plot(time, np.maximum(5 - 0.3 * 9.81 * time, 0), **EXACT, label="exact")
@@ -314,7 +230,7 @@ def draw_oblique_ball(runs):
                         width_ratios=(1, 1.15))
     point = runs["point"]
     path = axes["path"]
-    x, y = point.column("node_1/U1"), 0.5 + point.column("node_1/U2")
+    x, y = point.node(1).U1, 0.5 + point.node(1).U2
     path.plot(x, y, color=BLUE, lw=5, alpha=0.6, label="carom")
     across, up = oblique_bounce(2.0, -1.0, 0.3, 0.8)
     path.plot([0, 1, 1 + 0.5 * across], [0.5, 0, 0.5 * up], **EXACT, label="exact")
@@ -326,7 +242,7 @@ def draw_oblique_ball(runs):
     note(path, 1.88, 0.02, f"{across:.2f}, {up:.1f}", ha="right")
     elastic = runs["elastic"]
     mesh = elastic.mesh
-    frame = nearest(mesh.times, elastic.time[np.argmax(np.abs(elastic.owned("CF2")))])
+    frame = nearest(mesh.times, elastic.time[np.argmax(np.abs(elastic.pair.CF2))])
     painted = body(axes["a"], mesh, frame, "MISES", (0, 12), 1.0, STRESS, 0.2)
     place = mesh.place(frame, 1.0)
     low, high = place.min(axis=0), place.max(axis=0)
@@ -335,7 +251,7 @@ def draw_oblique_ball(runs):
            f"an elastic disc, μ = 0.2, time {mesh.times[frame]:.2g}")
     bar(made, painted, axes["a"], "Mises stress", aspect=12)
     force = axes["b"]
-    normal, along = elastic.owned("CF2"), elastic.owned("CF1")
+    normal, along = elastic.pair.CF2, elastic.pair.CF1
     force.plot(elastic.time, np.abs(normal), color=BLUE, label="normal")
     force.plot(elastic.time, np.abs(along), color=ORANGE, label="friction")
     force.plot(elastic.time, 0.2 * np.abs(normal), color=BLACK, lw=1.4, ls="--", label="0.2 × normal")
@@ -352,7 +268,7 @@ def draw_crack(runs):
     run = runs["slap"]
     mesh = run.mesh
     low, high = lines_of(mesh)
-    force = np.hypot(run.owned("CF1"), run.owned("CF2"))
+    force = np.hypot(run.pair.CF1, run.pair.CF2)
     opening = openings(mesh)
     widest = int(np.argmax(opening))
     shut = nearest(mesh.times, run.time[int(np.argmax(force))])

@@ -18,9 +18,9 @@ def draw_sdof(runs):
     time = run.time
     fine = np.linspace(0, time[-1], 2001)
     exact = oscillator(time[-1])
-    axes.plot(time, run.column("node_1/U1"), color=BLUE, lw=5, alpha=0.55, label="carom, dt = 0.04")
+    axes.plot(time, run.node(1).U1, color=BLUE, lw=5, alpha=0.55, label="carom, dt = 0.04")
     axes.plot(fine, exact.at(fine)[0], **EXACT, label="exact")
-    hits = run.events()
+    hits = run.hits
     axes.plot(hits, np.full(len(hits), -0.5), "o", ms=9, color=RED, zorder=7, label="impacts")
     axes.set(xlim=(0, time[-1]), ylim=(-0.8, 1.1), xlabel="time", ylabel="displacement U1")
     wall(axes, -0.5, "wall")
@@ -36,9 +36,9 @@ def draw_two_dof(runs):
     fine = np.linspace(0, time[-1], 3001)
     exact = two_dof(time[-1]).at(fine)[0]
     for i, (colour, name) in enumerate(((ORANGE, "mass 1"), (BLUE, "mass 2"))):
-        axes.plot(time, run.column(f"node_{i + 1}/U1"), color=colour, lw=5, alpha=0.55, label=name)
+        axes.plot(time, run.node(i + 1).U1, color=colour, lw=5, alpha=0.55, label=name)
         axes.plot(fine, exact[i], **EXACT, label="exact" if i else None)
-    hits = run.events()
+    hits = run.hits
     axes.plot(hits, np.full(len(hits), -0.5), "o", ms=9, color=RED, zorder=7, label="impacts")
     axes.set(xlim=(0, time[-1]), ylim=(-0.85, 1.2), xlabel="time", ylabel="displacement U1")
     wall(axes, -0.5, "wall of mass 2")
@@ -54,7 +54,7 @@ def draw_ball(runs):
     for name, colour, words in (("ball", BLUE, "transformation"),
                                 ("ball_fictitious", ORANGE, "fictitious force")):
         run = runs[name]
-        axes.plot(run.time, 1 + run.column("node_1/U2"), color=colour, lw=5, alpha=0.6,
+        axes.plot(run.time, 1 + run.node(1).U2, color=colour, lw=5, alpha=0.6,
                   ls="-" if name == "ball" else (0, (1.2, 0.8)), label=words)
     axes.plot(fine, exact, **EXACT, label="exact")
     tops = ball_impact_times(rest, 1.0, 10.0, 0.5)
@@ -79,7 +79,7 @@ def positions(title, runs_of, starts, gaps, speeds, masses, end):
     for i, (colour, line) in enumerate(looks):
         if i == len(masses):
             break
-        axes.plot(run.time, starts[i] + run.column(f"node_{i + 1}/U1"), color=colour, lw=5,
+        axes.plot(run.time, starts[i] + run.node(i + 1).U1, color=colour, lw=5,
                   alpha=0.7, ls=line, label=f"mass {i + 1}" if len(masses) > 2
                   else f"mass of {masses[i]:g}", zorder=2 + i)
         axes.plot(fine, starts[i] + exact.at(fine)[0][i], **EXACT,
@@ -95,10 +95,10 @@ def draw_colliding_masses(runs):
     made, axes = positions("Two free masses collide, e = 0.7", run, (0.0, 1.0), (1.0,),
                            (2.0, -1.0), (3.0, 1.0), 2.0)
     axes.set_ylabel("place x = X + U1")
-    axes.plot(run.events(), [2 / 3], "o", ms=10, color=RED, zorder=8)
+    axes.plot(run.hits, [2 / 3], "o", ms=10, color=RED, zorder=8)
     axes.annotate("impact at 1/3", (1 / 3, 2 / 3), (0.62, 0.0), fontsize=14,
                   arrowprops={"arrowstyle": "->"})
-    after = [run.column(f"node_{i}/V1")[-1] for i in (1, 2)]
+    after = [run.node(i).V1[-1] for i in (1, 2)]
     note(axes, 0.19, 0.0, "velocity 2", BLUE, weight="bold")
     note(axes, 0.02, 1.2, "velocity −1", "#9a6a00", weight="bold")
     note(axes, 1.3, 0.85, f"velocity {after[0]:.3f}", BLUE, weight="bold")
@@ -112,7 +112,7 @@ def draw_cradle(runs):
     starts = (0.0, 0.5, 0.6, 0.7)
     made, axes = positions("Newton's cradle: four equal masses, e = 1", run, starts,
                            (0.5, 0.1, 0.1), (1.0, 0.0, 0.0, 0.0), (1.0,) * 4, 1.4)
-    hits = run.events()
+    hits = run.hits
     axes.plot(hits, [0.5, 0.6, 0.7], "o", ms=10, color=RED, zorder=9)
     axes.annotate("impacts at 0.5, 0.6, 0.7", (0.6, 0.6), (0.1, 1.05), fontsize=14,
                   arrowprops={"arrowstyle": "->"})
@@ -128,7 +128,7 @@ def draw_bar(runs):
             ("bar_fictitious", ORANGE, "-", "fictitious force"),
             ("bar_implicit", BLUE, "-", "implicit"), ("bar_explicit", GREEN, "--", "explicit")):
         run = runs[name]
-        axes[0].plot(run.time, np.abs(run.owned("CF1")), color=colour, ls=line, label=words,
+        axes[0].plot(run.time, np.abs(run.pair.CF1), color=colour, ls=line, label=words,
                      lw=1.6 if name == "bar_fictitious" else 3, alpha=0.9)
     fine = np.linspace(0.3, 1.4, 5001)
     axes[0].plot(fine, bar_contact_force(fine)[0], **EXACT, label="exact")
@@ -154,16 +154,16 @@ def draw_buildings(runs):
     made, axes = figure("Two buildings 3 cm apart pound in an earthquake", 2, 1,
                         height_ratios=(1.3, 1))
     time = run.time
-    left, right = (100 * run.column(f"node_{n}/U1") for n in (13, 23))
+    left, right = (100 * run.node(n).U1 for n in (13, 23))
     axes[0].plot(time, left, color=BLUE, label="left, 3 storeys")
     axes[0].plot(time, right + 3, color=ORANGE, ls="--", label="right, 5 storeys")
-    hits = np.unique(run.events())
+    hits = np.unique(run.hits)
     axes[0].plot(hits, np.interp(hits, time, left), "o", color=RED, ms=7, zorder=7,
                  label="impacts")
     axes[0].set(xlim=(1.4, 6), ylim=(-7, 17), ylabel="U1 (cm)")
     axes[0].set_title("third floors, the right one 3 cm further", fontsize=14)
-    axes[1].plot(time, 100 * run.column("node_13/U1"), color=BLUE, lw=1.6)
-    axes[1].plot(time, 100 * run.column("node_25/U1"), color=ORANGE, lw=1.6, ls="--")
+    axes[1].plot(time, 100 * run.node(13).U1, color=BLUE, lw=1.6)
+    axes[1].plot(time, 100 * run.node(25).U1, color=ORANGE, lw=1.6, ls="--")
     axes[1].set(xlim=(0, 20), xlabel="time (s)", ylabel="U1 (cm)", ylim=(-14, 14))
     axes[1].set_title("tops", fontsize=14)
     key_below(made, axes[0])
@@ -184,7 +184,7 @@ def draw_two_bars(runs):
     force, duration, short, long = bars_head_on(5.0, 10.0, 10.0, 0.0)
     begin, end = 0.05, 0.05 + duration
     fine = np.linspace(0, 1, 5001)
-    axes[0].plot(run.time, np.abs(run.owned("CF1")), color=BLUE, label="carom")
+    axes[0].plot(run.time, np.abs(run.pair.CF1), color=BLUE, label="carom")
     axes[0].plot(fine, np.where((fine >= begin) & (fine < end), force, 0), **EXACT, label="exact")
     axes[0].set(ylabel="contact force", xlim=(0, 0.7), ylim=(-10, 195))
     axes[0].legend(loc="upper right")
@@ -218,12 +218,10 @@ def draw_pounding_frame(runs):
     bar(left, painted, [axes["a"], axes["b"]], "S22 (kPa), displacements × 30", location="bottom",
         aspect=18, ticks=[-4000, 0, 4000])
     time, axis = run.time, right.subplots()
-    owners = sorted((name for name in run.file["history"] if name.startswith("node_")),
-                    key=lambda name: int(name[5:]))
-    slender, stiff = (1000 * run.column(f"{owner}/U1") for owner in owners)
+    slender, stiff = (1000 * run.node(node).U1 for node in run.nodes)
     axis.plot(time, slender, color=BLUE, label="slender")
     axis.plot(time, stiff + 10, color=ORANGE, ls="--", label="stiff")
-    axis.fill_between(time, 0, 1, where=run.owned("CNUM") > 0, color=RED, alpha=0.25, lw=0,
+    axis.fill_between(time, 0, 1, where=run.pair.CNUM > 0, color=RED, alpha=0.25, lw=0,
                       transform=axis.get_xaxis_transform(), label="in contact")
     axis.set(xlabel="time (s)", xlim=(0, 1), ylabel="U1 (mm)", ylim=(-30, 30))
     axis.set_title("first floors, the stiff one 10 mm further", fontsize=14)

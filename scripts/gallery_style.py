@@ -1,14 +1,11 @@
 """What the pictures of the gallery share: size, style, reading, bodies in colours. Nothing to be run."""
 
-import matplotlib
 import numpy as np
 from carom_mesh import Mesh
-from carom_results import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY  # noqa: F401  (for pictures)
+from carom_plots import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, plt  # noqa: F401  (for pictures)
+from carom_results import Result
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.tri import Triangulation
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
 
 WIDTH, HEIGHT, DOTS = 8.0, 5.0, 100  # inches, dots an inch: 800 by 500, to be read at half of that
 STYLE = {
@@ -26,31 +23,18 @@ EXACT = {"color": BLACK, "lw": 1.6, "ls": (0, (5, 2.5)), "zorder": 6}
 STRESS, SPEED, SIGNED = "viridis", "cividis", "RdBu_r"
 
 
-class Run:
-    """A result file, open."""
-
-    def __init__(self, results):
-        self.path, self.file = results.path, results.file
-
-    def column(self, name):
-        """A column of the history."""
-        return self.file[f"history/{name}"][()]
-
-    def owned(self, ending):
-        """The only column of the history that ends so."""
-        found = [f"{owner}/{ending}" for owner, item in self.file["history"].items()
-                 if owner != "time" and ending in item]
-        if len(found) != 1:
-            raise ValueError(f"{self.path}: {len(found)} columns {ending}")
-        return self.column(found[0])
+class Run(Result):
+    """An open result file, with what pictures ask for most."""
 
     @property
-    def time(self):
-        return self.column("time")
+    def pair(self):
+        """The history of the first contact pair or set of gaps."""
+        return self.contact(self.contacts[0])
 
-    def events(self, kind="impact"):
-        """When events of a kind happened."""
-        return self.file["events/time"][()][self.file["events/kind"][()] == kind.encode()]
+    @property
+    def hits(self):
+        """When there were impacts."""
+        return self.events.filter(kind="impact").time
 
     @property
     def mesh(self):
@@ -123,6 +107,11 @@ def body(axes, mesh, frame, field=None, limits=None, scale=1.0, colours=STRESS, 
     edges = [e for block in mesh.boundary(place, 4) for e in block]
     axes.add_collection(LineCollection(edges, colors="black", lw=0.9, zorder=4))
     return painted
+
+
+def lines_of(mesh):
+    """The lower and upper corner of the points."""
+    return mesh.points[:, :2].min(axis=0), mesh.points[:, :2].max(axis=0)
 
 
 def window(axes, low, high, title=None):
