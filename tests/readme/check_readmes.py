@@ -203,6 +203,18 @@ def pages():
     return sorted(map(Path, names))
 
 
+def finds_mistakes(program, build):
+    """A page of mistakes: each of its blocks must fail, and its table by two or more."""
+    page = Page(Path('tests/readme/wrong_page.txt'), Shell(ROOT, program, build), set())
+    try:
+        page.check()
+    finally:
+        page.shell.close()
+    wrong = sum(page.counts.values()) - page.counts['lines in a table']
+    lines = {failure.split(': ')[0] for failure in page.failures}
+    return wrong == 11 and len(lines) == wrong + 1 and len(page.failures) > wrong + 2
+
+
 def main():
     """All pages, or those given; status 1 if anything failed."""
     program, build = (Path(word).resolve() for word in sys.argv[1:3])
@@ -219,6 +231,8 @@ def main():
         print(f'{path}: ' + (', '.join(f'{count} {kind}' for kind, count in page.counts.items()) or 'nothing to run'))
     if not sys.argv[3:]:
         failures += [f'readme_rules.py: nothing uses {row}' for row in INSTEAD + DELEGATED if row not in used]
+        if not finds_mistakes(program, build):
+            failures.append('the page of mistakes, tests/readme/wrong_page.txt, is not found wrong throughout')
     times = os.times()
     print(f'{times.user + times.system + times.children_user + times.children_system:.1f} s of processor time')
     if failures:
