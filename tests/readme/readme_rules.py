@@ -23,6 +23,7 @@ INSTEAD = [
     (r'^cmake --preset (\w+)$', r'PRESET \1', 'a build: this test runs in one'),
     (r'^cmake --install build --prefix (\S+)$', r'cmake --install BUILD --prefix \1',
      'the build at hand in the place of build/'),
+    (r'^man carom$', r'test -s scripts/packaging/carom.1', 'shows an installed page: the test `packaging` formats it'),
     (r'^cd build && cpack( .*)?$', r'true', 'the test `packaging` packs and installs'),
     (r'^mpirun -n \d+ carom run (\S+)$', r'carom check \1', 'needs a build with MPI: solve_by_ranks runs it there'),
 ]
