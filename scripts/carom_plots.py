@@ -40,7 +40,7 @@ DASHES = ["-", (0, (6, 2)), (0, (6, 2, 1.5, 2)), (0, (1.5, 1.5))]
 EVENT_COLOURS = {"impact": RED, "capture": GREEN, "release": PURPLE}
 EVENT_LINES = {"impact": "dashed", "capture": "dotted", "release": "dashdot"}
 MOST_LINES = 60  # events beyond which they are ticks at the foot
-MOST_TICKS = 1500  # places along an axis that ticks can have
+BINS_OF_TICKS = 1500  # places along an axis that ticks can have
 FORMATS = (".png", ".pdf", ".svg")
 WINDOWS = ("QtAgg", "TkAgg", "GTK4Agg", "GTK3Agg", "WxAgg", "MacOSX")
 
@@ -204,8 +204,8 @@ def event_times(events, first, last):
     for kind, parts in sorted(found.items()):
         times = np.unique(np.concatenate(parts))
         count = len(times)
-        if count > MOST_TICKS:
-            places = np.unique(np.floor((times - first) / span * MOST_TICKS))
-            times = first + (places + 0.5) / MOST_TICKS * span
+        if count > BINS_OF_TICKS:
+            places = np.unique(np.floor((times - first) / span * BINS_OF_TICKS))
+            times = first + (places + 0.5) / BINS_OF_TICKS * span
         drawn[kind] = count, times
     return drawn

@@ -60,17 +60,12 @@ class Result:
 
     def table(self, group, empty=False):
         """The columns of a group such as "history" or "frequency"."""
-        columns = {}
-
-        def note(name, item):
-            if isinstance(item, h5py.Dataset) and item.shape:
-                columns[name] = Column(item, f"{group}/{name}")
+        found = self.file.get(group)
+        columns = dict(columns_of(found)) if isinstance(found, h5py.Group) else {}
 
         def missing(name, known):
             return f"'{self.path}' has no column '{name}' in /{group}; there are: {shortened(known)}"
 
-        if isinstance(self.file.get(group), h5py.Group):
-            self.file[group].visititems(note)
         if not columns and not empty:
             written = WRITTEN_BY.get(group)
             raise MissingError(f"'{self.path}' has no columns in /{group}"
@@ -167,7 +162,7 @@ class Result:
             return (f"'{self.path}' has no {column} of {kind} {name} "
                     f"({OWNERS[kind]} writes it); there are: {shortened(names)}")
 
-        columns = {key: Column(item, f"{group}/{key}") for key, item in self.file[group].items()}
+        columns = dict(columns_of(self.file[group]))
         columns.setdefault("time", Column(self.file["history/time"], "history/time"))
         return Table(columns, missing)
 
@@ -215,6 +210,15 @@ def opened(path):
         except OSError as error:
             said = error
     raise ScriptError(f"cannot read '{path}' as an HDF5 file: {said}")
+
+
+def columns_of(group, prefix=""):
+    """The names and columns of a group and of the groups in it."""
+    for name, item in group.items():
+        if isinstance(item, h5py.Group):
+            yield from columns_of(item, f"{prefix}{name}/")
+        elif item.shape:
+            yield prefix + name, Column(item, item.name.strip("/"))
 
 
 def heading_of(deck):

@@ -6,7 +6,7 @@ import fnmatch
 import numpy as np
 from carom_script import MissingError, need
 
-BLOCK = 1 << 18  # rows in memory at a time
+BLOCK = 1 << 16  # rows in memory at a time
 BINS = 2000  # columns of pixels that a picture has at most
 
 

@@ -12,6 +12,7 @@ from carom_plots import (
 from carom_results import Result
 from carom_script import ScriptError, run
 from carom_tables import Computed, envelope, minmax
+from matplotlib.colors import to_rgb
 
 PARTS = {
     "kinetic": BLUE, "strain": ORANGE, "damping": GREEN, "plastic": YELLOW, "friction": PURPLE,
@@ -22,7 +23,7 @@ PARTS = {
 def largest(column):
     """The largest absolute value of a column."""
     low, high = minmax(column, 1)
-    return max(-low[0], high[0])
+    return max(abs(low[0]), abs(high[0]))
 
 
 def first_sums(count):
@@ -30,13 +31,15 @@ def first_sums(count):
     return lambda *columns: np.sum(columns[:count], axis=0)
 
 
-def draw_stack(axes, time, sums, parts):
-    """Areas between the sums of the energies so far."""
-    below = np.zeros(len(time))
-    for name, above in zip(parts, sums):
-        axes.fill_between(time, below, above, color=PARTS[name], alpha=0.6, lw=0,
-                          label=name.replace("_", " "))
-        below = above
+def draw_stack(axes, time, sums, parts, envelope_drawn):
+    """Areas below the sums of the energies so far, the highest first: each hides a part of those
+    before. Of an envelope the largest value in each span of time counts."""
+    if envelope_drawn:
+        time = time.reshape(-1, 4).mean(axis=1)
+        sums = [top.reshape(-1, 4).max(axis=1) for top in sums]
+    for name, top in reversed(list(zip(parts, sums))):
+        colour = 0.6 * np.array(to_rgb(PARTS[name])) + 0.4
+        axes.fill_between(time, 0.0, top, color=colour, lw=0, label=name.replace("_", " "))
 
 
 def draw(result, lines, with_events):
@@ -58,7 +61,7 @@ def draw(result, lines, with_events):
         2, 1, sharex=True, figsize=(9.5, 7.4), height_ratios=(3, 1), layout="constrained"
     )
     if stacked:
-        draw_stack(above, time, curves, parts)
+        draw_stack(above, time, curves, parts, len(time) < len(energy))
     else:
         for i, (name, values) in enumerate(zip(parts, curves)):
             style = {**curve_style(i), "color": PARTS[name]}

@@ -45,6 +45,7 @@ def draw(result, chosen, with_events):
         len(kinds), 1, sharex=True, squeeze=False, figsize=(9.5, 2.0 + 2.9 * len(kinds)),
         layout="constrained",
     )
+    above = ""
     for axes, kind in zip(panels[:, 0], kinds):
         names = [name for name in chosen if quantity(name) == kind]
         owner = common([label(name).partition(", ")[2] for name in names])
@@ -54,7 +55,8 @@ def draw(result, chosen, with_events):
         if with_events:
             mark_events(axes, result.events, time[0], time[-1])
         axes.set_ylabel(axis_label(common([name.split("/")[-1] for name in names]) or kind))
-        axes.set_title(owner, loc="left", fontsize=12)
+        axes.set_title(owner if owner != above else "", loc="left", fontsize=12)
+        above = owner
         legend_beside(axes)
     panels[-1, 0].set_xlabel("time")
     panels[-1, 0].margins(x=0.01)

@@ -12,12 +12,13 @@ from carom_plots import (
 from carom_results import Result
 from carom_script import ScriptError, run
 from carom_tables import Computed, minmax
+from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm
 
 WORST_MISMATCH = 1.5  # between an event's and the history's velocity, in changes of one increment
 MOST_ROWS = 200000  # beyond which the number of rows in each pixel is drawn, not the path
 MOST_JUMPS = 400  # impacts beyond which they are not drawn
-PIXELS = 700
+PIXELS = 480
 
 
 def choose_node(result, dof):
@@ -87,19 +88,28 @@ def draw_path(axes, result, node, dof):
         axes.plot([], [], "o", mfc="white", mec=RED, ms=5, label="after")
 
 
+def pixel(values, low, high):
+    """The number of the pixel in which each value lies."""
+    return np.clip((values - low) / (high - low) * PIXELS, 0, PIXELS - 1).astype(int)
+
+
 def draw_density(figure, axes, columns):
     """How many rows lie in each pixel: of histories whose path would fill the picture."""
     ranges = []
     for column in columns:
         low, high = (float(part[0]) for part in minmax(column, 1))
         ranges.append((low, high if high > low else low + 1.0))
-    counts = np.zeros((PIXELS, PIXELS))
-    for both in Computed(lambda d, v: np.stack((d, v), axis=1), *columns).blocks():
-        counts += np.histogram2d(*both.T, bins=PIXELS, range=ranges)[0]
-    image = axes.imshow(np.where(counts > 0, counts, np.nan).T, origin="lower", aspect="auto",
-                        extent=(*ranges[0], *ranges[1]), norm=LogNorm(1), cmap="viridis_r",
-                        interpolation="nearest")
-    figure.colorbar(image, ax=axes, label="rows in a pixel")
+    counts = np.zeros(PIXELS * PIXELS, int)
+    for pixels in Computed(lambda d, v: pixel(v, *ranges[1]) * PIXELS + pixel(d, *ranges[0]),
+                           *columns).blocks():
+        counts += np.bincount(pixels, minlength=PIXELS * PIXELS)
+    counts = counts.reshape(PIXELS, PIXELS)
+    scale = ScalarMappable(LogNorm(1, max(counts.max(), 2)), "viridis_r")
+    image = scale.to_rgba(counts, bytes=True)
+    image[counts == 0] = 255
+    axes.imshow(image, origin="lower", aspect="auto", extent=(*ranges[0], *ranges[1]),
+                interpolation="nearest")
+    figure.colorbar(scale, ax=axes, label="rows in a pixel")
 
 
 def draw(result, node, dof, wall):

@@ -17,6 +17,14 @@ _carom_files() {
    compgen -d -- "$current"
 }
 
+# The next word of the cards that begin with the words behind `help`; most names have one or two
+_carom_cards() {
+   local before="${COMP_WORDS[*]:2:COMP_CWORD-2}" names
+   names=$("${COMP_WORDS[0]}" help --table 2>/dev/null | cut -d ';' -f 1 | tr '[:upper:]' '[:lower:]')
+   [[ -z $before ]] || names=$(sed -n "s/^${before,,} //p" <<<"$names")
+   compgen -W "$(cut -d ' ' -f 1 <<<"$names" | sort -u)" -- "${current,,}"
+}
+
 _carom_deck() {
    local word
    for word in "${COMP_WORDS[@]:2}"; do
@@ -26,18 +34,20 @@ _carom_deck() {
 
 _carom() {
    local current=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]}
-   local command=${COMP_WORDS[1]} words='' line
+   local command=${COMP_WORDS[1]} options='' words line
    COMPREPLY=()
    if ((COMP_CWORD == 1)); then
-      COMPREPLY=($(compgen -W 'run check --version --help' -- "$current"))
+      COMPREPLY=($(compgen -W 'run check help --version --help' -- "$current"))
       return
    fi
    case $command in
-   run) words='-o --define --threads --quiet --overwrite --restart --memory --time-limit' ;;
-   check) words='--define --memory' ;;
+   run) options='-o --define --threads --quiet --overwrite --restart --memory --time-limit' ;;
+   check) options='--explain --define --memory' ;;
+   help) before='help' ;;
    *) return ;;
    esac
    case $before in
+   help) words=$(_carom_cards) ;;
    -o | --restart)
       words=$(_carom_files '*.h5' '*.hdf5' '*.hdf' '*.vtkhdf')
       type compopt &>/dev/null && compopt -o filenames 2>/dev/null
@@ -51,7 +61,7 @@ _carom() {
    --time-limit) return ;;
    *)
       if [[ $current == -* ]]; then
-         words=$(compgen -W "$words" -- "$current")
+         words=$(compgen -W "$options" -- "$current")
       else
          words=$(_carom_files '*.inp')
          type compopt &>/dev/null && compopt -o filenames 2>/dev/null

@@ -21,6 +21,7 @@ endfunction()
 
 carom_install_gzipped(${packaging}/carom.1 carom.1 ${CMAKE_INSTALL_MANDIR}/man1)
 carom_install_gzipped(${PROJECT_SOURCE_DIR}/CHANGELOG.md changelog ${CMAKE_INSTALL_DOCDIR})
+carom_install_gzipped(${PROJECT_BINARY_DIR}/changelog.plain changelog.Debian ${CMAKE_INSTALL_DOCDIR})
 install(FILES ${packaging}/carom.bash RENAME carom
   DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
 install(FILES README.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
@@ -62,6 +63,9 @@ endif()
 set(CAROM_MAINTAINER "the carom developers <carom@carom.invalid>" CACHE STRING
   "Name and address of who makes the package; .invalid has no mail")
 set(CPACK_DEBIAN_PACKAGE_MAINTAINER ${CAROM_MAINTAINER})
+set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
+string(TIMESTAMP package_date "%a, %d %b %Y %H:%M:%S +0000" UTC)
+configure_file(${packaging}/changelog.Debian.in ${PROJECT_BINARY_DIR}/changelog.plain @ONLY)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)

@@ -31,6 +31,7 @@ module command_line
       type(definition_type), allocatable :: definitions(:)
       integer :: threads = 0                           !! 0: OMP_NUM_THREADS, else 1
       logical :: quiet = .false.
+      logical :: explain = .false.                     !! a check: say what the deck means
       logical :: overwrite = .false.                   !! results that exist may be replaced
       character(len=:), allocatable :: restart         !! results of an earlier run to go on from
       real(wp) :: memory = 0.0_wp                      !! bytes the run may take, 0: the machine's
@@ -49,12 +50,15 @@ contains
             //nl// &
             '                      [--overwrite] [--restart OLD.h5] [--memory SIZE]'//nl// &
             '                      [--time-limit TIME]'//nl// &
-            '       carom check DECK [--define NAME=VALUE]... [--memory SIZE]'//nl// &
+            '       carom check DECK [--explain] [--define NAME=VALUE]... [--memory SIZE]' &
+            //nl// &
             '       carom help [CARD]'//nl// &
             '       carom --version | --help'//nl//nl// &
             '  run      computes the deck; writes OUT.h5, OUT.log and OUT.sta'//nl// &
             '           (default: beside the deck, with its name)'//nl// &
             '  check    reads the deck, builds the model and prints what a run would do'//nl// &
+            '  --explain  prints what the deck means: periods, waves, contact, a step' &
+            //nl// &
             '  help     prints the deck reference of a card; without one the list of cards'//nl// &
             '  --define overrides a *PARAMETER of the deck'//nl// &
             '  --threads threads to work with (default: OMP_NUM_THREADS, else 1)'//nl// &
@@ -133,6 +137,8 @@ contains
          command%quiet = .true.
       case ('--overwrite')
          command%overwrite = .true.
+      case ('--explain')
+         command%explain = .true.
       case default
          if (word(1:min(1, len(word))) == '-' .or. len(word) == 0) then
             call usage_error(error, 'unknown option '''//word//'''')
@@ -243,6 +249,8 @@ contains
       end if
       if (command%kind == command_check .and. allocated(command%restart)) then
          call usage_error(error, '--restart goes with run: a check starts nothing')
+      else if (command%kind == command_run .and. command%explain) then
+         call usage_error(error, '--explain goes with check')
       else if (allocated(command%output)) then
          call check_ending(command%output, error)
          return

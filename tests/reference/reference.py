@@ -25,7 +25,7 @@ class Parameter:
     """A parameter as an entry describes it: its form (`''`, `=`, `?`), its alternatives, its marks."""
 
     def __init__(self, match):
-        value = match[2] or ""
+        value, self.text = match[2] or "", match.string
         self.name = match[1].strip()
         self.form = "?" if value.startswith("[") else value[:1]
         self.required = match[3] == ", required"
@@ -37,6 +37,12 @@ class Parameter:
     def marks(self):
         """The marks of the reader's table."""
         return "~" * self.not_yet + self.form + "!" * self.required
+
+    @property
+    def tells_default(self):
+        """Whether it says what holds without it; a flag, a required one and an error need not."""
+        free = self.required or self.not_yet or self.form == ""
+        return free or re.search(r"[dD]efault|without effect|penalty only|an error\b", self.text)
 
     @property
     def closed(self):

@@ -1,7 +1,7 @@
 """The deck reference against the program: tests/reference/run.py CAROM
 
 - The cards of input/README.md are those of the reader's table (`carom help --table`), with the same
-  parameters, which take a value or not, are required or not yet known alike.
+  parameters, which take a value or not, are required or not yet known alike, and have a default.
 - A wrong value given to each parameter, a wrong word in each field: the words that the reader then
   allows are those of the entry.
 - Each example, put into the whole deck that it names, runs. So do these decks.
@@ -118,6 +118,8 @@ def check_parameters(bench):
             bench.report(f"*{name}: this parameter cannot be read: {line[:60]}")
         if bool(found) == bool(entry.paragraph("Parameters: ")) and rule.usage != "-":
             bench.report(f"*{name}: parameters, or 'Parameters: none.'")
+        for word in [p.name for p in found.values() if not p.tells_default]:
+            bench.report(f"*{name}: {word} has no default")
         for word in rule.parameters.keys() - found.keys():
             bench.report(f"*{name}: the reader knows {word}, the entry does not")
         for word in found.keys() - rule.parameters.keys():

@@ -11,81 +11,13 @@ import types
 import h5py
 import numpy as np
 from carom_case import INPUT, Checks, run_deck, scratch_folder
+from result_decks import BARE, STRIP
 
 from carom_results import Result            # noqa: E402  (from scripts, where carom_case looks)
 from carom_script import ScriptError        # noqa: E402
 from carom_tables import Computed, envelope, minmax   # noqa: E402
 
 CHECKS = Checks()
-STRIP = """*HEADING
-Two elements fly
-** a comment in between
-against a wall
-*NODE, NSET=ALL
-1, 0, 0
-2, 1, 0
-3, 2, 0
-11, 0, 1
-12, 1, 1
-13, 2, 1
-*ELEMENT, TYPE=CPE4, ELSET=BODY
-7, 1, 2, 12, 11
-8, 2, 3, 13, 12
-*ELEMENT, TYPE=MASS, ELSET=POINT
-20, 13
-*MASS, ELSET=POINT
-0.1
-*MATERIAL, NAME=M
-*ELASTIC
-100, 0.3
-*DENSITY
-1
-*SOLID SECTION, ELSET=BODY, MATERIAL=M
-*SURFACE, NAME=FRONT
-7, S4
-*RIGID SURFACE, NAME=WALL, TYPE=PLANE
--0.01, 0, 0
-1, 0, 0
-*SURFACE INTERACTION, NAME=HIT
-*IMPACT, RESTITUTION=0.5
-*CONTACT PAIR, INTERACTION=HIT
-FRONT, WALL
-*INITIAL CONDITIONS, TYPE=VELOCITY
-ALL, 1, -1
-*STEP
-*DYNAMIC, DIRECT
-0.002, 0.2
-*NODE PRINT, NSET=ALL
-U, V
-*EL PRINT, ELSET=BODY
-S
-*NODE FILE, FREQUENCY=10
-U, V
-*EL FILE, FREQUENCY=10
-S
-*CONTACT PRINT
-CF
-*ENERGY PRINT
-*END STEP
-"""
-BARE = """*NODE
-1, 0, 0
-*ELEMENT, TYPE=MASS, ELSET=M
-1, 1
-*ELEMENT, TYPE=SPRING1, ELSET=S
-2, 1
-*MASS, ELSET=M
-1
-*SPRING, ELSET=S
-1
-1
-*INITIAL CONDITIONS, TYPE=DISPLACEMENT
-1, 1, 1
-*STEP
-*DYNAMIC, DIRECT
-0.1, 1
-*END STEP
-"""
 
 
 def message(function, *words):
