@@ -159,9 +159,9 @@ class Page:
 
     def _deck(self, block):
         """A whole deck runs; one without a step is at least sound."""
-        deck = self.shell.folder / 'page.inp'
+        deck = self.shell.folder / (block.mark('as') or 'page.inp')
         deck.write_text('\n'.join(block.lines) + '\n')
-        self._run('carom run page.inp -o page.h5 --overwrite --quiet', block.start,
+        self._run(f'carom run {deck.name} -o page.h5 --overwrite --quiet', block.start,
                   int(block.mark('status') or 0))
 
     def _cards(self, block):

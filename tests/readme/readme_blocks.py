@@ -7,6 +7,7 @@ which a page does not show, say what cannot be seen from its lines:
     <!-- prints: carom check input/a/a.inp -->      the block is what this command prints
     <!-- output of the block before -->             the block is what the commands there print
     <!-- cards for input/a/a.inp -->                a fragment, sound when put into this deck
+    <!-- as a.inp -->                               the deck is kept under this name
     <!-- with input/a/a.inp changed: OLD => NEW --> first change the copy of this file so
     <!-- tested by tests/a/b.py -->                 that test runs it
     <!-- lines of input/a/a.inp -->                 the first column of the table below quotes this deck, card by card
@@ -17,7 +18,7 @@ PROGRAMS = {'carom', 'build/carom', 'python', 'python3', '.venv/bin/python', 'ba
             'cpack', 'mpirun', 'touch', 'kill', 'git', 'cd', 'cp', 'ls', 'apt', 'apt-get', 'sudo', 'pip',
             'source', 'man', 'paraview', 'gmsh', 'ccx', 'head', 'mkdir', 'export', 'echo'}
 COMMAND = re.compile(r'(\w+=\S+ )*(\./)?((scripts|input|tests|\.ci|\.venv/bin)/\S+|make_\w+\.py|(?P<name>\S+))(\s|$)')
-MARK = re.compile(r'<!--\s*(status|prints:|output of the block before|cards for|with|tested by)\s*(.*?)\s*-->')
+MARK = re.compile(r'<!--\s*(status|as|prints:|output of the block before|cards for|with|tested by)\s*(.*?)\s*-->')
 LIST_ITEM = re.compile(r'\s*([-*+]|\d+\.)\s')
 
 

@@ -57,10 +57,10 @@ class Shell:
         return done.returncode, done.stdout + done.stderr
 
     def run_python(self, code):
-        """Exit status and text of lines of Python."""
+        """Exit status and text of lines of Python, with PYTHONPATH=scripts as README.md says."""
         path = self.folder / 'example.py'
         path.write_text(code)
-        return self._run_python(path, [], self.folder, first_path='')
+        return self._run_python(path, [], self.folder, first_path=str(self.folder / 'scripts'))
 
     def _run_python(self, script, arguments, where, first_path=None):
         """A script in a copy of this process, which has loaded matplotlib and h5py already."""
