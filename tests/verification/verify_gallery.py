@@ -55,7 +55,7 @@ def check_readmes(checks, folders):
         shown = [(words, where) for words, where in IMAGE.findall(text) if where == f'{name}.png']
         checks.true(text.startswith('# ') and len(shown) == 1 and len(shown[0][0]) > 40,
                     f'{name}: a title, and the picture with words for who does not see it')
-        checks.true('\n## Run it\n' in text and '\n    carom run ' in text and '\n## Files\n' in text,
+        checks.true('\n## Run it\n' in text and '\n    carom run input/' in text and '\n## Files\n' in text,
                     f'{name}: commands and files')
         there = {path.name for path in (INPUT / name).iterdir() if path.suffix in ('.inp', '.inc')}
         told = set(NAMED.findall(text))
