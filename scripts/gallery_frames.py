@@ -97,7 +97,8 @@ def draw_from_gmsh(runs):
     lowest = run.time[int(np.argmin(run.node(run.nodes[0]).U2))]
     before_at_after(made, [axes[k] for k in "abc"], mesh, (0, lowest, 3e-3),
                     ("MISES", (0, 16), STRESS, "Mises (MPa)"),
-                    ((low[0] - 8, plane - 9), high + (8, 9)), plane=plane, scale=scale, unit=(" ms", 1000))
+                    ((low[0] - 8, plane - 9), high + (8, 9)), plane=plane, scale=scale,
+                    unit=(" ms", 1000))
     axes["f"].set_title("above: displacements × 3", fontsize=13.5, loc="right")
     axes["f"].plot(1000 * run.time, np.abs(run.pair.CF2), color=BLUE)
     axes["f"].set(xlabel="time (ms)", ylabel="contact force (N)", xlim=(0, 4))
