@@ -4,7 +4,7 @@ module course_increments
    use kinds, only: wp
    use errors, only: error_type, new_error, status_numerical, status_interrupted
    use state_archive, only: archive_type
-   use text, only: to_text
+   use text, only: to_text, plural
    use steps, only: step_type
    use run_log, only: log_type, say
    use stop_request, only: watch_type
@@ -158,8 +158,8 @@ contains
 
       if (simulation%model%steps(course%step)%direct) return
       if (simulation%scene%system%static) then
-         call say(log, 'step '//to_text(course%step)//': '//to_text(course%increment) &
-               //' automatic increments, '//to_text(course%control%n_cut)//' tried in vain')
+         call say(log, 'step '//to_text(course%step)//': '//plural(course%increment, &
+               'automatic increment')//', '//to_text(course%control%n_cut)//' tried in vain')
       else
          call report_tolerance(course%plan, course%twins, course%step, log)
       end if

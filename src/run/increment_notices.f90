@@ -40,7 +40,7 @@ contains
 
       t = simulation%motion%motion%t
       if (simulation%n_events(event_limit) > self%limits) call warn(log, 'MAX EVENTS was ' &
-            //'reached within an increment: rows that hit then are held to its end'//new_line('a') &
+            //'reached: further hits were held to the end of the increment'//new_line('a') &
             //'  cure: a smaller step, a larger MAX EVENTS, or CAPTURE', .true., t, &
             simulation%n_events(event_limit) - self%limits)
       if (simulation%scene%n_cycles > self%cycles) call warn(log, 'the iteration of the ' &

@@ -1,7 +1,7 @@
 !> The JSON object of a run or check: what is common to both, and how the program ended.
 module json_report
    use kinds, only: wp
-   use errors, only: error_type, status_done, status_interrupted
+   use errors, only: error_type, status_done, status_usage, status_interrupted
    use numbers, only: parse_integer
    use json_text, only: json_type
    use model, only: model_type
@@ -66,7 +66,12 @@ contains
          call report%put('status', error%status)
          call report%put('ending', trim(merge('interrupted', 'failed     ', &
                error%status == status_interrupted)))
-         call put_error(report, error%message)
+         if (error%status == status_usage) then
+            ! without the help that follows it
+            call put_error(report, error%message(:index(error%message//nl, nl) - 1))
+         else
+            call put_error(report, error%message)
+         end if
       end if
       call report%close()
    end subroutine close_report

@@ -97,8 +97,13 @@ contains
             .or. place%rehearsal /= self%place%rehearsal) then
          ! the first look at something: speeds come with the next
          self%share = share
+         if (.not. self%drawn .or. place%rehearsal /= self%place%rehearsal) then
+            self%last = now
+            self%seconds = 0.0_wp
+            self%shares = 0.0_wp
+            self%increments = 0.0_wp
+         end if
          self%place = place
-         if (.not. self%drawn) self%last = now
       end if
       if (now - self%last < pause) return
       faded = exp((self%last - now)/memory)
@@ -119,7 +124,8 @@ contains
       real(wp) :: share
 
       associate (ends => self%ends(place%step - 1:place%step))
-         share = ends(1) + place%share*(ends(2) - ends(1))
+         share = ends(1)
+         if (place%rehearsal == 0) share = ends(1) + place%share*(ends(2) - ends(1))
       end associate
    end function share_of
 

@@ -196,17 +196,19 @@ contains
          call note(log, seconds//right(to_text(cost%elapsed, 3), 10))
          call note(log, shares)
          call note(log, '  elapsed         '//to_text(cost%elapsed, 3)//' s, processor time ' &
-               //to_text(cost%processor, 3)//' s; increments '//rate_of(simulation))
+               //to_text(cost%processor, 3)//' s'//rate_of(simulation))
       end associate
    end subroutine note_times
 
-   !> Increments a second of the time elapsed.
+   !> "; increments 850/s" of the time elapsed, nothing if there are none.
    pure function rate_of(simulation) result(text)
       type(simulation_type), intent(in) :: simulation
       character(len=:), allocatable :: text
 
       associate (cost => simulation%scene%system%cost)
-         text = rate_text(real(cost%increments, wp)/max(cost%elapsed, tiny(1.0_wp)))
+         text = ''
+         if (cost%increments > 0 .and. cost%elapsed > 0.0_wp) text = '; increments ' &
+               //rate_text(real(cost%increments, wp)/cost%elapsed)
       end associate
    end function rate_of
 
@@ -218,14 +220,14 @@ contains
       column = repeat(' ', max(1, width - len(text)))//text
    end function right
 
-   !> Those that came in the run, and how many there were.
+   !> Those that came again and again, and how many warnings there were.
    subroutine note_warnings(log)
       type(log_type), intent(in) :: log
       integer :: i
 
       associate (notices => log%notices)
          do i = 1, notices%n
-            if (notices%items(i)%timed) call note(log, notices%items(i)%line())
+            if (notices%items(i)%count > 1) call note(log, notices%items(i)%line())
          end do
          if (notices%n_warnings() > 0) call note(log, '  '//plural(notices%n_warnings(), 'warning'))
       end associate
@@ -239,6 +241,13 @@ contains
       text = time_text(seconds)
       if (seconds < 60.0_wp) text = to_text(seconds, 3)//' s'
    end function duration_text
+
+   pure function first_line(text) result(line)
+      character(len=*), intent(in) :: text
+      character(len=:), allocatable :: line
+
+      line = text(:index(text//new_line('a'), new_line('a')) - 1)
+   end function first_line
 
    !> What a terminal shows of it.
    subroutine tell_briefly(simulation, log)
@@ -256,7 +265,7 @@ contains
             call tell(log, plural(notices%n_warnings(), 'warning')//', see '//log%name)
          else
             do i = 1, notices%n
-               if (notices%items(i)%warning) call tell(log, notices%items(i)%line())
+               if (notices%items(i)%warning) call tell(log, first_line(notices%items(i)%line()))
             end do
          end if
       end associate

@@ -55,7 +55,7 @@ contains
 
       associate (cost => simulation%scene%system%cost)
          call start_clock(cost)
-         output%log%terminal = .not. command%quiet
+         output%log%terminal = .not. command%json
          call catch_signals()
          call ignore_signals([broken_pipe, file_too_large])
          call start_publishing(output%publishing)

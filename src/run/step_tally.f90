@@ -101,7 +101,7 @@ contains
       real(wp), allocatable :: counts(:), seconds(:)
       integer :: n
 
-      self%goes_on = archive%reading
+      if (archive%reading) self%goes_on = .true.
       call archive%enter('tally')
       if (archive%has('counts') .or. .not. archive%reading) then
          if (.not. archive%reading) then
