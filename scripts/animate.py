@@ -7,12 +7,15 @@ just happened the node is red. Writes a GIF, or with -o NAME.mp4 an MP4 film (ne
 """
 
 import os
+import textwrap
 
 import numpy as np
 from carom_mesh import CORNERS, VERTEX, Mesh
-from carom_results import (
-    BLACK, BLUE, ORANGE, RED, SKY, Results, ScriptError, axis_label, make_parser, plt, quantity, run,
+from carom_plots import (
+    BLACK, BLUE, ORANGE, RED, SKY, axis_label, colours_of, make_parser, output, plt,
 )
+from carom_results import Result
+from carom_script import ScriptError, run
 from matplotlib import animation
 from matplotlib.collections import LineCollection, PolyCollection
 
@@ -23,12 +26,12 @@ FLASH = 3  # pictures that an impact stays visible
 class Film:
     """The mesh, its frames and what else is to be seen."""
 
-    def __init__(self, results, scale):
-        self.mesh = mesh = Mesh(results)
-        self.file = results.file
+    def __init__(self, result, scale):
+        self.mesh = mesh = Mesh(result)
+        self.file, self.heading = result.file, result.heading
         self.scale = scale
         self.points, self.times, self.n_frames = mesh.points, mesh.times, mesh.n_frames
-        self.events = results.events()
+        self.events = result.events.filter(kind="impact")
         planes = self.file.get("model/rigid_planes")
         self.planes = np.zeros((0, 6)) if planes is None else np.atleast_2d(planes[()])
         circles = self.file.get("model/rigid_circles")
@@ -47,7 +50,7 @@ class Film:
 
     def stress(self, frame):
         """The axial stress of the lines in a frame; None without any."""
-        if "CellData/S" not in self.mesh.grid or not len(self.lines):
+        if "S" not in self.mesh.frames.names("Cell") or not len(self.lines):
             return None
         return self.mesh.component("Cell", "S11", frame)[self.line_cells]
 
@@ -65,11 +68,11 @@ class Film:
 
     def hits(self, frame, before):
         """Points with an impact since a frame before; of a gap element, both of its points."""
-        if frame == 0 or len(self.events["time"]) == 0:
+        if frame == 0 or len(self.events) == 0:
             return set()
-        time, kind = self.events["time"], self.events["kind"]
-        recent = (time > self.times[before]) & (time <= self.times[frame]) & (kind == "impact")
-        nodes = np.asarray(self.events["node"])[recent].tolist()
+        time = self.events.time
+        recent = (time > self.times[before]) & (time <= self.times[frame])
+        nodes = self.events.node[recent].tolist()
         hit = {self.point_of.get(node, -1) for node in nodes}
         for gap in self.gaps:
             if gap[1] in hit:  # the node of an event is the second of its gap
@@ -143,9 +146,12 @@ class Picture:
         width, height = high - low
         aspect = height / width
         wide = 7.6 if aspect < 1 else max(5.0, 7.6 / aspect + 0.6)
-        tall = min(max(wide * aspect, 1.6), 7.6) + 1.2
+        self.heading = textwrap.wrap(film.heading, int(9.5 * wide))[:2]
+        above = 0.45 + 0.2 * len(self.heading)
+        tall = min(max(wide * aspect, 1.6), 7.6) + 0.72 + above
         self.figure, self.axes = plt.subplots(figsize=(wide, tall), dpi=90)
-        self.figure.subplots_adjust(left=0.12, right=0.97, top=0.88, bottom=0.62 / tall)
+        self.figure.subplots_adjust(left=0.12, right=0.97, top=1.0 - above / tall,
+                                    bottom=0.68 / tall)
         self.axes.set_xlim(low[0], high[0])
         self.axes.set_ylim(low[1], high[1])
         self.axes.set_aspect("equal")
@@ -180,7 +186,7 @@ class Picture:
         size = 90 if len(shown) <= 5 else 30 if len(shown) <= 20 else 8
         self.dots = self.axes.scatter([], [], s=size, color=BLUE, edgecolor=BLACK, zorder=3)
         self.flash = self.axes.scatter([], [], s=260, color=ORANGE, alpha=0.6, lw=0, zorder=2.5)
-        self.title = self.axes.set_title("")
+        self.title = self.axes.set_title("", fontsize=12)
 
     def show_field(self, frames):
         """Solids in the colours of a field, the same in all frames."""
@@ -189,27 +195,16 @@ class Picture:
             raise ScriptError("--field needs solids")
         looked_at = frames[:: max(1, len(frames) // 60)] + [frames[-1]]
         shown = np.concatenate([np.concatenate(film.field(self.field, f)) for f in looked_at])
-        if not np.isfinite(shown).all():
-            raise ScriptError(f"'{film.mesh.path}': {self.field} has values that are no numbers")
         # a few points of concentrated stress would leave all else in one colour
-        low, high = (float(value) for value in np.quantile(shown, (0.002, 0.998)))
-        style = {"cmap": "viridis"}
-        if low < 0 < high and min(-low, high) > 0.05 * max(-low, high):
-            low, high = -max(-low, high), max(-low, high)
-            style = {"cmap": "coolwarm"}
-        if high - low <= 1e-12 * max(abs(low), abs(high), 1e-300):
-            low, high = low - 1.0, high + 1.0
+        style = colours_of(shown, f"'{film.mesh.path}': {self.field}", inner=0.996)
         for faces in self.faces:
-            faces.set(clim=(low, high), **style)
+            faces.set(**style)
         self.figure.subplots_adjust(right=0.84)
         box = self.axes.get_position()
         place = self.figure.add_axes((0.86, box.y0, 0.02, box.height))
         bar = self.figure.colorbar(self.faces[0], cax=place, extend="both")
         bar.formatter.set_powerlimits((-2, 3))
-        words = "Mises stress" if self.field == "MISES" else axis_label(quantity(self.field))
-        if words.endswith(quantity(self.field)):
-            words = words[: -len(quantity(self.field))] + self.field
-        bar.set_label(words)
+        bar.set_label(axis_label(self.field))
 
     def show_stress(self, frames):
         """Lines in the colour of their stress, if the file has it."""
@@ -245,7 +240,8 @@ class Picture:
         for spine in self.axes.spines.values():
             spine.set_edgecolor(RED if hit else BLACK)
             spine.set_linewidth(3.0 if hit else 0.8)
-        self.title.set_text(f"time {self.film.times[frame]:.4g}" + ("   impact" if hit else ""))
+        now = f"time {self.film.times[frame]:.4g}" + (", impact" if hit else "")
+        self.title.set_text("\n".join([*self.heading, now]))
         self.title.set_color(RED if hit else BLACK)
 
 
@@ -260,9 +256,21 @@ def writer_for(path, fps):
     raise ScriptError(f"'{path}' should end in .gif or .mp4")
 
 
+def write(picture, steps, path, fps):
+    """The film as a file."""
+    writer = writer_for(path, fps)
+    try:
+        with writer.saving(picture.figure, path, dpi=90):
+            for step in steps:
+                picture.show(*step)
+                writer.grab_frame()
+    except OSError as error:
+        raise ScriptError(f"cannot write '{path}': {error}") from None
+    print(f"{path}: {len(steps)} frames, {os.path.getsize(path) / 1e6:.1f} MB")
+
+
 def main():
-    parser = make_parser(__doc__)
-    parser.add_argument("result", help="result file of carom")
+    parser = make_parser(__doc__, "film: .gif or .mp4")
     parser.add_argument("--field", help="colours of the solids: MISES, S11, V, V1, U, ...")
     parser.add_argument("--scale", type=float, default=1.0, help="factor on the displacements (1)")
     parser.add_argument("--every", type=int, help=f"every n-th frame (so that <= {MOST_FRAMES})")
@@ -270,21 +278,20 @@ def main():
     given = parser.parse_args()
     if given.fps <= 0 or (given.every is not None and given.every < 1):
         raise ScriptError("--fps and --every must be positive")
-    with Results(given.result) as results:
-        path = results.output(given.output, ".gif")
-        writer = writer_for(path, given.fps)
-        film = Film(results, given.scale)
+    with Result(given.result) as result:
+        film = Film(result, given.scale)
         every = given.every or -(-film.n_frames // MOST_FRAMES)
         frames = list(range(0, film.n_frames, every))
         picture = Picture(film, frames, given.field and given.field.upper())
-        try:
-            with writer.saving(picture.figure, path, dpi=90):
-                for before, frame in zip([0] * FLASH + frames, frames):
-                    picture.show(frame, before)
-                    writer.grab_frame()
-        except OSError as error:
-            raise ScriptError(f"cannot write '{path}': {error}") from None
-        print(f"{path}: {len(frames)} frames, {os.path.getsize(path) / 1e6:.1f} MB")
+        steps = list(zip(frames, [0] * FLASH + frames))
+        if given.output or not given.show:
+            write(picture, steps, output(given, result, ".gif"), given.fps)
+        if given.show:
+            moving = animation.FuncAnimation(
+                picture.figure, lambda step: picture.show(*step), steps, init_func=lambda: None,
+                interval=1000.0 / given.fps, cache_frame_data=False)
+            plt.show()
+            moving.pause()
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@ says what the keys mean), bench.png (time and memory against size) and shows a t
 two threads count only on an idle machine; whether it was idle is in the file.
 """
 
+import argparse
 import json
 import os
 import platform
@@ -15,7 +16,7 @@ from pathlib import Path
 import bench_cases as cases
 from bench_picture import draw, exponents
 from bench_runs import Programs, Watch
-from carom_results import ScriptError, make_parser, run
+from carom_script import ScriptError, run
 
 # Elements along each side of the squares: 6 n^2 equations
 SIZES = {
@@ -109,8 +110,9 @@ class Bench:
 
 def read_arguments():
     """The command line."""
-    parser = make_parser(__doc__)
-    parser.set_defaults(output="bench")
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("-o", "--output", default="bench", help="folder to write (bench)")
     parser.add_argument("--build", default="build", help="the build with carom and carom_kernels")
     parser.add_argument("--quick", action="store_true", help="ends within two minutes")
     parser.add_argument("--peers", action="store_true", default=None, help="run other programs too")

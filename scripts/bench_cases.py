@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 from bench_decks import FIELDS, explicit_block, implicit_block, parse_block
 from bench_runs import Finished, last_line, step_seconds, step_size
-from carom_results import Results, ScriptError
+from carom_results import Result
+from carom_script import ScriptError
 from exact_solutions import oscillator
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -188,14 +189,14 @@ def block_with(bench, n, name, impact):
     if not long["late"]:
         keys[f"block{name}_solves_per_step"] = long["solves"] / long["increments"]
         keys[f"block{name}_factorizations"] = long["factorizations"]
-        with Results(str(long["output"])) as results:
+        with Result(str(long["output"])) as results:
             keys[f"block{name}_balance_error"] = relative_balance(results)
     return keys
 
 
 def relative_balance(results):
     """Largest error of the energy balance, relative to the largest kinetic energy."""
-    table = results.table("energy", ["balance_error", "kinetic"])
+    table = results.energy.arrays(["balance_error", "kinetic"])
     return float(np.abs(table["balance_error"]).max() / table["kinetic"].max())
 
 
@@ -216,7 +217,7 @@ FAR = ("-0.5, 0, 0", "-50, 0, 0")
 
 def sdof_error(results):
     """Largest difference to the exact displacement."""
-    table = results.table("history", ["time", "node_1/U1"])
+    table = results.history.arrays(["time", "node_1/U1"])
     exact = oscillator(table["time"][-1]).at(table["time"])[0]
     return float(np.abs(table["node_1/U1"] - exact).max())
 
@@ -227,7 +228,7 @@ def sdof(bench, dt=0.08):
     deck = write(bench.work, "sdof.inp", sdof_text(linear=LINEAR))
     runs = [bench.programs.run(deck, log=False, dt=dt) for _ in range(20)]
     done = [run["seconds"] for run in runs]
-    with Results(str(deck.with_suffix(".h5"))) as results:
+    with Result(str(deck.with_suffix(".h5"))) as results:
         error = sdof_error(results)
     return {"sdof_process_ms": 1e3 * statistics.median(done),
             "sdof_process_best_ms": 1e3 * min(done),
@@ -242,7 +243,7 @@ def event_solves(bench):
         hit, alone = bench.programs.run(deck), bench.programs.run(free)
     except ScriptError as error:
         return {"event_solves": f"EVENTS=ANCHOR: {error}"}
-    with Results(str(hit["output"])) as results:
+    with Result(str(hit["output"])) as results:
         error = sdof_error(results)
     return {"event_solves": (hit["solves"] - alone["solves"]) / hit["impacts"],
             "event_factorizations": hit["factorizations"] - alone["factorizations"],

@@ -1,7 +1,7 @@
 """The picture of bench.py: time and memory against the number of equations, with exponents."""
 
 import numpy as np
-from carom_results import BLUE, GREEN, ORANGE, plt, save
+from carom_plots import BLUE, GREEN, ORANGE, plt, save
 
 # What theory says of a square grid: skyline, sparse factors by nested dissection
 THEORY = {

@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 
 from carom_deck import read_costs
-from carom_results import ScriptError
+from carom_script import ScriptError
 
 FEWEST_STEPS = 10
 RUN_LIMIT = 600.0         # seconds that a run may take

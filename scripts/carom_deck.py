@@ -20,7 +20,7 @@ from pathlib import Path
 
 import h5py
 
-from carom_results import ScriptError
+from carom_script import ScriptError
 
 # The result group /cost of a run; what is missing there is read from the log
 COSTS = [

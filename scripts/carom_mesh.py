@@ -1,7 +1,7 @@
 """The mesh of a result file and its frames, for the scripts that draw it; nothing to be run."""
 
 import numpy as np
-from carom_results import ScriptError
+from carom_script import ScriptError
 
 VERTEX, LINE, CURVE = 1, 3, 21
 # VTK types of solids: the corners, then the nodes between them
@@ -13,25 +13,16 @@ TENSOR = {"11": 0, "22": 1, "33": 2, "12": 3, "23": 4, "13": 5}
 class Mesh:
     """Points, cells by type, and the fields of each frame."""
 
-    def __init__(self, results):
-        self.path = results.path
-        self.file = results.file
-        self.grid = grid = self.file.get("VTKHDF")
-        if grid is None or "PointData/U" not in grid or "Steps" not in grid:
+    def __init__(self, result):
+        self.path, self.file = result.path, result.file
+        self.frames = frames = result.frames
+        if "U" not in frames.names("Point"):
             raise ScriptError(f"'{self.path}' has no frames of U in /VTKHDF (*NODE FILE with U)")
-        self.points = grid["Points"][()]
-        self.n_frames = int(grid["Steps"].attrs["NSteps"])
+        self.n_frames, self.times = len(frames), frames.times
         if self.n_frames == 0:
             raise ScriptError(f"'{self.path}' has no frames yet")
-        self.times = grid["Steps/Values"][: self.n_frames]
-        types, offsets = grid["Types"][()], grid["Offsets"][()]
-        connectivity = grid["Connectivity"][()]
-        self.n_cells = len(types)
-        self.blocks = {}  # type: (cells, their points)
-        for kind in np.unique(types):
-            cells = np.flatnonzero(types == kind)
-            n = int(offsets[cells[0] + 1] - offsets[cells[0]])
-            self.blocks[int(kind)] = cells, connectivity[offsets[cells][:, None] + np.arange(n)]
+        self.points, self.n_cells = frames.points, len(frames.types)
+        self.blocks = frames.cells
         scheme = self.file.get("model/element_scheme")
         self.scheme = np.ones(self.n_cells, int) if scheme is None else scheme[()]
 
@@ -51,9 +42,7 @@ class Mesh:
 
     def values(self, where, name, frame):
         """A field in one frame: where is Point or Cell."""
-        count = len(self.points) if where == "Point" else self.n_cells
-        begin = int(self.grid[f"Steps/{where}DataOffsets/{name}"][frame])
-        return self.grid[f"{where}Data/{name}"][begin : begin + count]
+        return self.frames.values(where, name, frame)
 
     def place(self, frame, scale):
         """The x and y of all points."""
@@ -62,7 +51,7 @@ class Mesh:
     def component(self, where, field, frame):
         """The values of a field such as U1, S11, MISES or U (size); None if it is not there."""
         name, component = field.rstrip("0123456789"), field[len(field.rstrip("0123456789")) :]
-        if name not in self.grid.get(f"{where}Data", {}):
+        if name not in self.frames.names(where):
             return None
         values = self.values(where, name, frame)
         n = 1 if values.ndim == 1 else values.shape[1]
@@ -77,7 +66,8 @@ class Mesh:
         """The names that `component` takes."""
         names = []
         for where in ("Point", "Cell"):
-            for name, item in self.grid.get(f"{where}Data", {}).items():
+            for name in self.frames.names(where):
+                item = self.frames.grid[f"{where}Data/{name}"]
                 n = 1 if item.ndim == 1 else item.shape[1]
                 ends = {1: [""], 3: ["", "1", "2", "3"]}.get(n, list(TENSOR))
                 names += [name + end for end in ends if name + end not in names]

@@ -1,205 +1,237 @@
-"""What all scripts share, reading result files first: from carom_results import Results."""
+"""Result files of carom, of finished runs and of runs that go on; what is named is read, no more.
 
-import argparse
-import fnmatch
+    from carom_results import Result
+
+    with Result("run.h5") as result:
+        print(result.heading, result.nodes, result.contacts)
+        u = result.node(5).U1                 an array with a row an increment, as result.time
+        s = result.element(7).S11
+        f = result.contact("RIM-WALL").CF1
+        last = result.node(5)["U1"][-1000:]   a column stays in the file: only these rows are read
+        print(result.energy.kinetic.max(), result.cost.solves)
+        for event in result.events.filter(kind="impact"):
+            print(event.time, event.node, event.impulse)
+        for frame in result.frames:           see carom_frames.py
+            print(frame.time, abs(frame.U).max())
+        table = result.to_pandas("history")   needs pandas
+
+Names of sets and surfaces are in upper case in the file; `contact` takes them in any case. All
+quantities are in the units of the deck. What is not there ends with a ScriptError that names the
+card which writes it.
+"""
+
+import functools
 import os
-import sys
 
 import h5py
-import matplotlib
 import numpy as np
+from carom_frames import Frames
+from carom_script import MissingError, ScriptError
+from carom_tables import Column, Events, Named, Table, natural_key, shortened
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
-
-plt.rcParams.update(
-    {
-        "font.size": 12,
-        "axes.labelsize": 13,
-        "axes.titlesize": 13,
-        "legend.fontsize": 11,
-        "lines.linewidth": 1.6,
-        "axes.grid": True,
-        "grid.alpha": 0.3,
-        "figure.dpi": 100,
-        "savefig.dpi": 130,
-        "axes.axisbelow": True,
-    }
-)
-
-# Colours that remain apart for colour-blind readers (Okabe and Ito)
-BLUE, ORANGE, GREEN, RED, PURPLE, SKY, YELLOW, BLACK = (
-    "#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7", "#56B4E9", "#F0E442", "#000000",
-)
-COLOURS = [BLUE, ORANGE, GREEN, RED, PURPLE, SKY, BLACK]
-EVENT_COLOURS = {"impact": RED, "capture": GREEN, "release": PURPLE}
-EVENT_LINES = {"impact": "dashed", "capture": "dotted", "release": "dashdot"}
-
-QUANTITIES = {
-    "U": "displacement", "V": "velocity", "A": "acceleration", "RF": "reaction force",
-    "S": "stress", "E": "strain", "PEEQ": "equivalent plastic strain", "ENER": "strain energy",
-    "CF": "contact force", "CDIS": "smallest gap", "impulse": "contact impulse",
-    "CPRESS": "contact pressure", "CSLIP": "slip", "CSTATE": "state of contact",
+EVENTS = ("time", "kind", "pair", "node", "gap_rate_before", "gap_rate_after", "impulse", "beta",
+          "solves", "factorizations")
+OWNERS = {"node": "*NODE PRINT", "element": "*EL PRINT", "contact": "*CONTACT PRINT"}
+WRITTEN_BY = {
+    "history": "*NODE PRINT, *EL PRINT and *CONTACT PRINT write it",
+    "energy": "*ENERGY PRINT writes it",
+    "frequency": "a *FREQUENCY step writes it",
 }
 
 
-class ScriptError(Exception):
-    """Something the user can put right; its text is all that is shown."""
-
-
-def make_parser(docstring):
-    """An argument parser with the result file and -o, described by the module's docstring."""
-    parser = argparse.ArgumentParser(
-        description=docstring, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("-o", "--output", help="file to write (default: beside the result file)")
-    return parser
-
-
-def run(main):
-    """Calls main(); an error the user can put right becomes one line and exit status 1."""
-    try:
-        main()
-    except ScriptError as error:
-        sys.exit(f"error: {error}")
-    except BrokenPipeError:
-        sys.exit(1)
-
-
-class Results:
-    """An open result file; use it in a `with` statement."""
+class Result:
+    """An open result file; use it in a `with` statement, or close it."""
 
     def __init__(self, path):
-        self.path = path
-        if not os.path.isfile(path):
-            raise ScriptError(f"no result file '{path}'")
-        try:  # without a lock, so that a run that still goes on can be looked at
-            self.file = h5py.File(path, "r", locking=False)
-        except OSError as error:
-            raise ScriptError(f"cannot read '{path}' as an HDF5 file: {error}") from None
+        self.path = str(path)
+        if not os.path.isfile(self.path):
+            raise MissingError(f"no result file '{self.path}'")
+        self.file = opened(self.path)
 
     def __enter__(self):
         return self
 
     def __exit__(self, *_):
+        self.close()
+
+    def close(self):
+        """Closes the file."""
         self.file.close()
 
-    def columns(self, group):
-        """The paths of all columns of a table, in natural order (node_2 before node_10)."""
-        found = []
+    def table(self, group, empty=False):
+        """The columns of a group such as "history" or "frequency"."""
+        found = self.file.get(group)
+        columns = dict(columns_of(found)) if isinstance(found, h5py.Group) else {}
 
-        def note(name, item):
-            if isinstance(item, h5py.Dataset):
-                found.append(name)
+        def missing(name, known):
+            return f"'{self.path}' has no column '{name}' in /{group}; there are: {shortened(known)}"
 
-        if isinstance(self.file.get(group), h5py.Group):
-            self.file[group].visititems(note)
-        return sorted(found, key=natural_key)
+        if not columns and not empty:
+            written = WRITTEN_BY.get(group)
+            raise MissingError(f"'{self.path}' has no columns in /{group}"
+                               + (f" ({written})" if written else ""))
+        return Table(columns, missing)
 
-    def select(self, group, patterns):
-        """The columns that match the comma-separated names (with * and ?), in the order given."""
-        known = self.columns(group)
-        chosen = []
-        for pattern in filter(None, (item.strip().strip("/") for item in patterns.split(","))):
-            if pattern.startswith(group.strip("/") + "/"):
-                pattern = pattern[len(group.strip("/")) + 1 :]
-            matching = [name for name in known if fnmatch.fnmatchcase(name, pattern)]
-            if not matching:
-                raise ScriptError(missing(self.path, group, pattern, known))
-            chosen += [name for name in matching if name not in chosen]
-        return chosen
+    @functools.cached_property
+    def history(self):
+        """All of /history: columns `time`, `node_5/U1`, `element_7/S11`, `contact_A-B/CF1`, ..."""
+        return self.table("history")
 
-    def column(self, group, name):
-        """The values of one column."""
-        item = self.file.get(f"{group}/{name}")
-        if not isinstance(item, h5py.Dataset):
-            raise ScriptError(missing(self.path, group, name, self.columns(group)))
-        values = item[()]
-        if values.dtype.kind == "S":
-            values = np.char.decode(values, "utf-8", "replace")
-        return values
+    @functools.cached_property
+    def energy(self):
+        """The columns of /energy; those of groups of elements as energy["group_1/kinetic"]."""
+        return self.table("energy")
 
-    def table(self, group, names):
-        """Columns by name, cut to the rows that all of them have."""
-        values = {name: self.column(group, name) for name in names}
-        rows = min(len(column) for column in values.values())
-        if rows == 0:
-            raise ScriptError(f"'{self.path}': /{group} has no rows yet")
-        return {name: column[:rows] for name, column in values.items()}
+    @functools.cached_property
+    def modes(self):
+        """The columns of /frequency, a row a mode."""
+        return self.table("frequency")
 
-    def description(self, group, name):
-        """The description of a column, or its name if there is none."""
-        text = self.file[f"{group}/{name}"].attrs.get("description", name)
-        return text.decode("utf-8", "replace") if isinstance(text, bytes) else str(text)
-
+    @functools.cached_property
     def events(self):
-        """The columns of /events with a row an impact; all empty where there were none."""
-        names = ["time", "kind", "pair", "node", "gap_rate_before", "gap_rate_after", "impulse"]
-        known = set(self.columns("events"))
-        if "time" not in known:
-            return {name: np.array([]) for name in names}
-        values = {name: self.column("events", name) for name in names if name in known}
-        rows = min(len(column) for column in values.values())
-        values.setdefault("kind", np.full(rows, "impact"))
-        return {name: column[:rows] for name, column in values.items()}
+        """The events; their columns are there, and empty, where nothing has happened."""
+        found = self.table("events", empty=True)
+        known = [name for name in EVENTS if name in found] + \
+            [name for name in found.names if name not in EVENTS]
+        columns = {name: found[name] for name in known} or \
+            {name: np.zeros(0, str if name in ("kind", "pair") else float) for name in EVENTS}
+        return Events(columns, found._missing)
 
-    def output(self, given, ending):
-        """Where a picture goes: as asked, or beside the result file."""
-        return given or os.path.splitext(self.path)[0] + ending
+    @functools.cached_property
+    def frames(self):
+        """The frames of the mesh, a sequence; see carom_frames.py."""
+        return Frames(self)
+
+    @property
+    def time(self):
+        """The times of the rows of the history."""
+        return self.history.time
+
+    @property
+    def frequencies(self):
+        """The natural frequencies, per unit of time."""
+        return self.modes.frequency
+
+    @property
+    def cost(self):
+        """The numbers of /cost: result.cost.solves."""
+        return Named({name: column[:].ravel()[0].item()
+                      for name, column in self.table("cost")._columns.items() if len(column)})
+
+    @property
+    def nodes(self):
+        """The ids of the nodes with a history."""
+        return [int(name) for name in self._owners("node")]
+
+    @property
+    def elements(self):
+        """The ids of the elements with a history."""
+        return [int(name) for name in self._owners("element")]
+
+    @property
+    def contacts(self):
+        """The names of the contact pairs and sets of gaps with a history."""
+        return self._owners("contact")
+
+    def node(self, number):
+        """The history of a node: result.node(5).U1."""
+        return self._owner("node", str(number))
+
+    def element(self, number):
+        """The history of an element: result.element(7).S11."""
+        return self._owner("element", str(number))
+
+    def contact(self, name):
+        """The history of a contact pair or set of gaps: result.contact("SLAVE-MASTER").CF1."""
+        return self._owner("contact", name if name in self.contacts else name.upper())
+
+    def _owners(self, kind):
+        """What has a history."""
+        names = sorted(self.file.get("history", ()), key=natural_key)
+        return [name[len(kind) + 1 :] for name in names if name.startswith(kind + "_")]
+
+    def _owner(self, kind, name):
+        """The columns of one of them."""
+        known, group = self._owners(kind), f"history/{kind}_{name}"
+        if name not in known:
+            there = f"; there are: {shortened(known)}" if known else ""
+            raise MissingError(f"'{self.path}' has no history of {kind} {name} "
+                               f"({OWNERS[kind]} writes it){there}")
+
+        def missing(column, names):
+            return (f"'{self.path}' has no {column} of {kind} {name} "
+                    f"({OWNERS[kind]} writes it); there are: {shortened(names)}")
+
+        columns = dict(columns_of(self.file[group]))
+        columns.setdefault("time", Column(self.file["history/time"], "history/time"))
+        return Table(columns, missing)
+
+    def array(self, path):
+        """Any dataset, as "model/node_id", in whole."""
+        item = self.file.get(path)
+        if not isinstance(item, h5py.Dataset):
+            raise MissingError(f"'{self.path}' has no /{path.strip('/')}")
+        return Column(item, path)[:] if item.shape else item[()]
+
+    @property
+    def deck(self):
+        """The text of the deck, included files behind it."""
+        return self.array("model/deck").decode("utf-8", "replace")
+
+    @functools.cached_property
+    def heading(self):
+        """The text of *HEADING; empty without one."""
+        item = self.file.get("model/deck")
+        if item is None:
+            return ""
+        start = item.id.get_offset()
+        if start is None or not hasattr(os, "pread"):
+            return heading_of(self.deck)
+        length = min(item.id.get_storage_size(), 1 << 16)  # the head of what may be long
+        head = os.pread(self.file.id.get_vfd_handle(), length, start)
+        return heading_of(head.decode("utf-8", "replace"))
+
+    @property
+    def title(self):
+        """The heading, or the name of the file where there is none."""
+        return self.heading or os.path.basename(self.path)
+
+    def to_pandas(self, group="history"):
+        """A table of the file, "history", "energy", "events", ..., as a pandas.DataFrame."""
+        return (self.events if group == "events" else self.table(group)).to_pandas()
 
 
-def natural_key(name):
-    """A key that sorts node_2 before node_10."""
-    digits = "".join(c if c.isdigit() else " " for c in name).split()
-    letters = "".join("0" if c.isdigit() else c for c in name)
-    head = letters.split("0")[0]
-    return head, [int(d) for d in digits], name
+def opened(path):
+    """An HDF5 file without a lock, so that a run that still goes on can be looked at; with one where
+    this process has opened the file with one before."""
+    for locking in (False, None):
+        try:
+            return h5py.File(path, "r", locking=locking)
+        except OSError as error:
+            said = error
+    raise ScriptError(f"cannot read '{path}' as an HDF5 file: {said}")
 
 
-def missing(path, group, name, known):
-    """The message about a column that is not there."""
-    if not known:
-        return f"'{path}' has no columns in /{group} (did the deck ask for them?)"
-    shown = ", ".join(known[:12]) + (", ..." if len(known) > 12 else "")
-    return f"'{path}' has no column '{name}' in /{group}; there are: {shown}"
+def columns_of(group, prefix=""):
+    """The names and columns of a group and of the groups in it."""
+    for name, item in group.items():
+        if isinstance(item, h5py.Group):
+            yield from columns_of(item, f"{prefix}{name}/")
+        elif item.shape:
+            yield prefix + name, Column(item, item.name.strip("/"))
 
 
-def quantity(name):
-    """The kind of a column, without its component: 'U' for node_2/U1."""
-    return name.split("/")[-1].rstrip("0123456789")
-
-
-def label(name):
-    """A column in words: 'U1, node 2' for node_2/U1."""
-    *owner, last = name.split("/")
-    return f"{last}, {owner[0].replace('_', ' ', 1)}" if owner else last
-
-
-def axis_label(kind):
-    """The quantity on an axis in words."""
-    words = QUANTITIES.get(kind)
-    return f"{words} {kind}" if words and words.split()[-1] != kind else (words or kind)
-
-
-def mark_events(axes, events, first, last):
-    """Draws the events between two times as thin lines; many of them as ticks at the foot."""
-    inside = (events["time"] >= first) & (events["time"] <= last)
-    for kind in sorted(set(events["kind"][inside].tolist())):
-        times = np.unique(events["time"][inside & (events["kind"] == kind)])
-        colour = EVENT_COLOURS.get(kind, "0.5")
-        top = 1.0 if len(times) <= 60 else 0.04
-        axes.vlines(
-            times, 0, top, transform=axes.get_xaxis_transform(), colors=colour,
-            linewidth=1.2, linestyles=EVENT_LINES.get(kind, "solid") if top == 1.0 else "solid",
-            label=f"{kind} ({len(times)})", zorder=1,
-        )
-
-
-def save(figure, path):
-    """Writes a picture and says where it is."""
-    try:
-        figure.savefig(path)
-    except (OSError, ValueError) as error:
-        raise ScriptError(f"cannot write '{path}': {error}") from None
-    plt.close(figure)
-    print(path)
+def heading_of(deck):
+    """The lines below *HEADING in one."""
+    found, inside = [], False
+    for line in deck.splitlines():
+        text = line.strip()
+        if text.startswith("**"):
+            continue
+        if text.startswith("*"):
+            if inside:
+                break
+            inside = text[1:].split(",")[0].strip().upper() == "HEADING"
+        elif inside and text:
+            found.append(text)
+    return " ".join(found)

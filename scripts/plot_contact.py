@@ -7,13 +7,14 @@ that follow from the contact forces. --hertz draws the exact pressure under the 
 radius and the modulus E* of the contact, --exact any curve of a file with two columns.
 """
 
-import argparse
-
 import numpy as np
 from carom_mesh import Mesh
-from carom_results import (
-    BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, Results, ScriptError, make_parser, plt, run, save,
+from carom_plots import (
+    BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, deliver, head, legend_beside, make_parser, plt,
+    two_numbers,
 )
+from carom_results import Result
+from carom_script import ScriptError, run
 from contact_solutions import hertz_line, hertz_pressure, pressure_of_forces
 
 COLOURS = [BLUE, ORANGE, GREEN, PURPLE, RED]
@@ -49,7 +50,7 @@ class Surface:
 
     def field(self, name, frame):
         """A field along the surface, None if the file has none."""
-        if name not in self.mesh.grid["PointData"]:
+        if name not in self.mesh.frames.names("Point"):
             return None
         return self.mesh.values("Point", name, frame)[self.points]
 
@@ -89,12 +90,12 @@ def chained(edges):
 
 def surfaces(mesh):
     """The surfaces of the slaves: points that have a state, or a gap."""
-    grid = mesh.grid["PointData"]
-    if "CSTATE" in grid:
+    names = mesh.frames.names("Point")
+    if "CSTATE" in names:
         chosen = np.zeros(len(mesh.points), bool)
         for frame in range(mesh.n_frames):
             chosen |= mesh.values("Point", "CSTATE", frame) != NONE
-    elif "CF" in grid:
+    elif "CF" in names:
         chosen = np.zeros(len(mesh.points), bool)
         for frame in range(mesh.n_frames):
             chosen |= np.any(mesh.values("Point", "CF", frame) != 0, axis=1)
@@ -193,11 +194,16 @@ def exact_curves(axes, given, found, frames):
         axes.plot(x, y, color=BLACK, lw=1.6, label="exact", zorder=5)
 
 
-def draw(mesh, found, frames, given):
+def figure_words(mesh, frames):
+    """The time, where there is but one."""
+    return f"time {mesh.times[frames[0]]:.4g}" if len(frames) == 1 else ""
+
+
+def draw(result, mesh, found, frames, given):
     """The figure: pressure, gap and, with friction, slip."""
     slips = [s.field("CSLIP", f) for s in found for f in frames]
     with_slip = any(slip is not None and np.any(slip != 0) for slip in slips)
-    with_gap = "CDIS" in mesh.grid["PointData"]
+    with_gap = "CDIS" in mesh.frames.names("Point")
     rows = 1 + with_gap + with_slip
     figure, panels = plt.subplots(rows, 1, sharex=True, squeeze=False, layout="constrained",
                                   figsize=(8.5, 3.2 + 1.9 * rows),
@@ -238,7 +244,8 @@ def draw(mesh, found, frames, given):
     for axes in panels[1:]:
         axes.ticklabel_format(axis="y", scilimits=(-2, 3))
     panels[-1].set_xlabel(words)
-    panels[0].legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    legend_beside(panels[0])
+    head(figure, result, figure_words(mesh, frames))
     return figure
 
 
@@ -264,18 +271,8 @@ def zoom(axes, found, frames, along, given):
     axes.set_xlim(low - (0.03 * (high - low) if given.half else margin), high + margin)
 
 
-def two_numbers(text):
-    """Two numbers with a comma."""
-    try:
-        first, second = (float(word) for word in text.split(","))
-    except ValueError:
-        raise argparse.ArgumentTypeError("two numbers with a comma") from None
-    return first, second
-
-
 def main():
     parser = make_parser(__doc__)
-    parser.add_argument("result", help="result file of carom")
     parser.add_argument("--frames", help="frames, comma-separated: 1 is the first, -1 the last"
                         " (default: the one with the largest pressure)")
     parser.add_argument("--along", choices=("x", "y", "s"), help="the abscissa")
@@ -287,11 +284,11 @@ def main():
     parser.add_argument("--exact", help="a file with two columns: place, pressure")
     parser.add_argument("--range", type=two_numbers, metavar="A,B", help="what is shown")
     given = parser.parse_args()
-    with Results(given.result) as results:
-        mesh = Mesh(results)
+    with Result(given.result) as result:
+        mesh = Mesh(result)
         found = surfaces(mesh)
         frames = choose_frames(mesh, given.frames) if given.frames else [strongest(mesh, found)]
-        save(draw(mesh, found, frames, given), results.output(given.output, "_contact.png"))
+        deliver(draw(result, mesh, found, frames, given), given, result, "_contact.png")
 
 
 if __name__ == "__main__":

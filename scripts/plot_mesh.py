@@ -8,9 +8,11 @@ enlarged.
 
 import numpy as np
 from carom_mesh import VERTEX, Mesh
-from carom_results import (
-    BLUE, GREEN, ORANGE, Results, ScriptError, axis_label, make_parser, plt, quantity, run, save,
+from carom_plots import (
+    BLUE, GREEN, ORANGE, axis_label, colours_of, deliver, head, make_parser, plt,
 )
+from carom_results import Result
+from carom_script import ScriptError, run
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
@@ -19,7 +21,6 @@ from matplotlib.tri import Triangulation
 MANY = 20000  # cells beyond which inner edges are not drawn
 PLAIN = "#cfe3f2"
 SCHEMES = {1: (BLUE, "implicit"), 2: (ORANGE, "explicit"), 0: ("0.6", "neither")}
-SPARE = {"MISES": "Mises stress MISES"}
 
 
 def frequencies(mesh):
@@ -146,43 +147,28 @@ class Drawing:
                              for kind in mesh.solids()])
         shown = np.concatenate([along, solids]) if len(along) + len(solids) else \
             (point if point is not None else cell)
-        if not np.isfinite(shown).all():
-            raise ScriptError(f"'{mesh.path}': {name} has values that are no numbers")
-        low, high = float(shown.min()), float(shown.max())
-        style = {"cmap": "viridis"}
-        if low < 0 < high and min(-low, high) > 0.05 * max(-low, high):
-            low, high = -max(-low, high), max(-low, high)
-            style = {"cmap": "coolwarm"}
-        if high - low <= 1e-12 * max(abs(low), abs(high), 1e-300):
-            low, high = low - (abs(low) * 0.01 or 1.0), high + (abs(high) * 0.01 or 1.0)
+        style = colours_of(shown, f"'{mesh.path}': {name}")
         for kind in mesh.solids():
-            self.paint(kind, cell, point, {**style, "clim": (low, high)})
+            self.paint(kind, cell, point, style)
         drawn = LineCollection(self.place[ends], lw=4.0, zorder=3, **style)
         drawn.set_array(along)
-        drawn.set_clim(low, high)
         self.axes.add_collection(drawn)
         if not len(along) + len(solids):  # points only
-            drawn = self.axes.scatter(*self.place.T, c=shown, s=60, vmin=low, vmax=high, zorder=5,
+            drawn = self.axes.scatter(*self.place.T, c=shown, s=60, zorder=5,
                                       **style) if point is not None else drawn
         else:
             self.points(lambda *_: "0.4")
         bar = self.figure.colorbar(drawn, ax=self.axes, shrink=0.8, aspect=30,
                                    location="bottom" if self.flat else "right")
-        kind = quantity(name)
-        words = axis_label(kind)
-        text = SPARE.get(kind) or (words[: -len(kind)] + name if words.endswith(kind)
-                                   else f"{words} {name}")
-        bar.set_label(text + ("" if point is not None else ", mean of each element"))
-        self.extremes = float(shown.min()), float(shown.max())
+        bar.set_label(axis_label(name) + ("" if point is not None else ", mean of each element"))
+        self.extremes = float(shown.min()) + 0.0, float(shown.max()) + 0.0
 
     def paint(self, kind, cell, point, style):
         """Solids of one type in the colours of a field."""
-        clim = style["clim"]
         if point is None:
             drawn = PolyCollection(self.mesh.outlines(kind, self.place, self.parts), lw=0, zorder=2,
-                                   cmap=style["cmap"], antialiaseds=False)
+                                   antialiaseds=False, **style)
             drawn.set_array(cell[self.mesh.block(kind)[0]])
-            drawn.set_clim(clim)
             self.axes.add_collection(drawn)
             return
         parts = self.parts if kind in (22, 23) else min(self.parts, 4)
@@ -190,7 +176,7 @@ class Drawing:
             parts = 1
         where, what, triangles = self.mesh.triangles(kind, self.place, point, parts)
         self.axes.tripcolor(Triangulation(*where.T, triangles), what, shading="gouraud",
-                            cmap=style["cmap"], vmin=clim[0], vmax=clim[1], zorder=2)
+                            zorder=2, **style)
 
     def supports(self):
         """A triangle for each freedom that is held or moved, its tip at the node."""
@@ -210,9 +196,9 @@ class Drawing:
         self.handles.append(Line2D([], [], color=GREEN, marker="^", ls="", ms=8,
                                    label=f"supports ({len(points)} freedoms)"))
 
-    def finish(self, title):
+    def finish(self, result, title):
         """Title and legend."""
-        self.axes.set_title(title)
+        head(self.figure, result, title)
         if self.handles:
             self.figure.legend(handles=self.handles, loc="outside lower center", ncols=3)
         return self.figure
@@ -220,7 +206,6 @@ class Drawing:
 
 def main():
     parser = make_parser(__doc__)
-    parser.add_argument("result", help="result file of carom")
     parser.add_argument("--field", help="colours: U1, U, V, S11, MISES, PEEQ, ENER, ...")
     parser.add_argument("--cells", action="store_true", help="the field's mean in each element")
     parser.add_argument("--frame", type=int,
@@ -234,8 +219,8 @@ def main():
         raise ScriptError("--field and --groups both want the colours: give one of them")
     if given.cells and not given.field:
         raise ScriptError("--cells goes with --field")
-    with Results(given.result) as results:
-        mesh = Mesh(results)
+    with Result(given.result) as result:
+        mesh = Mesh(result)
         modes = frequencies(mesh)
         frame = choose_frame(mesh, given.frame)
         scale = given.scale
@@ -253,7 +238,7 @@ def main():
         if given.field:
             field = given.field.upper()
             drawing.field(field, given.cells)
-            title += "\n{} from {:.4g} to {:.4g}".format(field, *drawing.extremes)
+            title += "; {} from {:.4g} to {:.4g}".format(field, *drawing.extremes)
         elif given.groups:
             drawing.groups()
         else:
@@ -261,7 +246,7 @@ def main():
         drawing.edges()
         if given.supports:
             drawing.supports()
-        save(drawing.finish(title), results.output(given.output, "_mesh.png"))
+        deliver(drawing.finish(result, title), given, result, "_mesh.png")
 
 
 if __name__ == "__main__":

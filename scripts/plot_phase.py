@@ -1,40 +1,43 @@
 """Phase portrait of a node: plot_phase.py RESULT.h5 [--node 2] [--dof 1] [--wall -0.5]
 
 Velocity over displacement. The jumps at impacts come from /events, which has the velocities
-before and after an impact; the history has only those at the end of each increment.
+before and after an impact; the history has only those at the end of each increment. Of very long
+histories the picture shows how many rows lie in each pixel.
 """
 
 import numpy as np
-from carom_results import (
-    BLUE, RED, Results, ScriptError, label, make_parser, plt, run, save,
+from carom_plots import (
+    BLACK, BLUE, RED, deliver, head, label, make_parser, plt,
 )
+from carom_results import Result
+from carom_script import ScriptError, run
+from carom_tables import Computed, minmax
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LogNorm
 
 WORST_MISMATCH = 1.5  # between an event's and the history's velocity, in changes of one increment
+MOST_ROWS = 200000  # beyond which the number of rows in each pixel is drawn, not the path
+MOST_JUMPS = 400  # impacts beyond which they are not drawn
+PIXELS = 480
 
 
-def choose_node(results, dof):
+def choose_node(result, dof):
     """The node of the first impact that has a history, else the first node that has one."""
-    known = set(results.columns("history"))
-    nodes = [name.split("/")[0] for name in results.columns("history") if name.endswith(f"/U{dof}")]
-    nodes = [node for node in nodes if f"{node}/V{dof}" in known]
+    nodes = [node for node in result.nodes
+             if f"U{dof}" in result.node(node) and f"V{dof}" in result.node(node)]
     if not nodes:
         raise ScriptError(
-            f"'{results.path}' has no node with both U{dof} and V{dof} in /history "
+            f"'{result.path}' has no node with both U{dof} and V{dof} in /history "
             "(*NODE PRINT with U, V)"
         )
-    hit = [f"node_{number}" for number in results.events().get("node", [])]
-    return next((node for node in hit if node in nodes), nodes[0])
+    known = set(nodes)
+    return next((event.node for event in result.events if event.node in known), nodes[0])
 
 
-def jumps(events, node, time, d, v):
+def jumps(events, time, d, v):
     """Index of the history row after each impact, displacement and velocities before and after."""
     found = []
-    if "node" not in events or "gap_rate_after" not in events:
-        return found
-    mine = (events["node"] == node) & (events["kind"] == "impact")
-    for when, before, after in zip(
-        events["time"][mine], events["gap_rate_before"][mine], events["gap_rate_after"][mine]
-    ):
+    for when, before, after in zip(events.time, events.gap_rate_before, events.gap_rate_after):
         row = int(np.searchsorted(time, when))
         if row == 0 or row >= len(time):
             continue
@@ -49,7 +52,7 @@ def jumps(events, node, time, d, v):
             place = d[row - 1] + 0.5 * (when - time[row - 1]) * (v[row - 1] + v_before)
         found.append((row, place, v_before, v_after))
     # against a node that moves, gap rates are no velocities, though a few may seem so
-    return found if len(found) > 0.8 * mine.sum() else []
+    return found if len(found) > 0.8 * len(events) else []
 
 
 def fits(v, row, before, after):
@@ -61,14 +64,15 @@ def fits(v, row, before, after):
     return abs(v[row - 1] - before) <= limit and abs(v[row] - after) <= limit + abs(before) * 0.5
 
 
-def draw(results, node, dof, wall):
-    """The figure: free flights in one colour, jumps in another."""
-    names = [f"{node}/U{dof}", f"{node}/V{dof}"]
-    table = results.table("history", ["time", *names])
-    time, d, v = (table[name] for name in ("time", *names))
-    number = int(node.split("_")[1])
-    found = jumps(results.events(), number, time, d, v)
-    figure, axes = plt.subplots(figsize=(7.5, 7), layout="constrained")
+def draw_path(axes, result, node, dof):
+    """Free flights in one colour, jumps in another."""
+    history = result.node(node)
+    table = history.arrays(["time", f"U{dof}", f"V{dof}"])
+    time, d, v = table.values()
+    if not len(time):
+        raise ScriptError(f"'{result.path}': /history has no rows yet")
+    events = result.events.filter(kind="impact", node=node)
+    found = jumps(events, time, d, v) if len(events) <= MOST_JUMPS else []
     begin, lead = 0, ([], [])
     for row, place, before, after in found:
         flight = slice(begin, row)
@@ -78,29 +82,65 @@ def draw(results, node, dof, wall):
         axes.plot([place], [after], "o", mfc="white", mec=RED, ms=5, zorder=4)
         begin, lead = row, ([place], [after])
     axes.plot([*lead[0], *d[begin:]], [*lead[1], *v[begin:]], color=BLUE, lw=1.2)
-    axes.plot(d[0], v[0], "s", color=BLUE, ms=6, label="start")
+    axes.plot(d[0], v[0], "s", color=BLACK, ms=8, zorder=5, label="start")
     if found:
         axes.plot([], [], "o--", color=RED, ms=5, label=f"{len(found)} impacts, before")
         axes.plot([], [], "o", mfc="white", mec=RED, ms=5, label="after")
+
+
+def pixel(values, low, high):
+    """The number of the pixel in which each value lies."""
+    return np.clip((values - low) / (high - low) * PIXELS, 0, PIXELS - 1).astype(int)
+
+
+def draw_density(figure, axes, columns):
+    """How many rows lie in each pixel: of histories whose path would fill the picture."""
+    ranges = []
+    for column in columns:
+        low, high = (float(part[0]) for part in minmax(column, 1))
+        ranges.append((low, high if high > low else low + 1.0))
+    counts = np.zeros(PIXELS * PIXELS, int)
+    for pixels in Computed(lambda d, v: pixel(v, *ranges[1]) * PIXELS + pixel(d, *ranges[0]),
+                           *columns).blocks():
+        counts += np.bincount(pixels, minlength=PIXELS * PIXELS)
+    counts = counts.reshape(PIXELS, PIXELS)
+    scale = ScalarMappable(LogNorm(1, max(counts.max(), 2)), "viridis_r")
+    image = scale.to_rgba(counts, bytes=True)
+    image[counts == 0] = 255
+    axes.imshow(image, origin="lower", aspect="auto", extent=(*ranges[0], *ranges[1]),
+                interpolation="nearest")
+    figure.colorbar(scale, ax=axes, label="rows in a pixel")
+
+
+def draw(result, node, dof, wall):
+    """The figure."""
+    history = result.node(node)
+    columns = history[f"U{dof}"], history[f"V{dof}"]
+    figure, axes = plt.subplots(figsize=(7.5, 7.4), layout="constrained")
+    if len(history) <= MOST_ROWS:
+        draw_path(axes, result, node, dof)
+    else:
+        draw_density(figure, axes, columns)
     if wall is not None:
         axes.axvline(wall, color="0.8", lw=9, zorder=0, label="wall")
-    axes.set_xlabel(f"displacement {label(names[0])}")
-    axes.set_ylabel(f"velocity {label(names[1])}")
-    axes.legend(loc="best")
+    axes.set_xlabel(f"displacement {label(f'node_{node}/U{dof}')}")
+    axes.set_ylabel(f"velocity {label(f'node_{node}/V{dof}')}")
+    axes.margins(0.06)
+    if axes.get_legend_handles_labels()[1]:
+        figure.legend(loc="outside lower center", ncols=4)
+    head(figure, result)
     return figure
 
 
 def main():
     parser = make_parser(__doc__)
-    parser.add_argument("result", help="result file of carom")
     parser.add_argument("--node", type=int, help="its id (default: the first that hits something)")
     parser.add_argument("--dof", type=int, default=1, choices=(1, 2, 3), help="default 1")
     parser.add_argument("--wall", type=float, help="displacement at which the wall stands")
-    arguments = parser.parse_args()
-    with Results(arguments.result) as results:
-        node = f"node_{arguments.node}" if arguments.node else choose_node(results, arguments.dof)
-        figure = draw(results, node, arguments.dof, arguments.wall)
-        save(figure, results.output(arguments.output, "_phase.png"))
+    given = parser.parse_args()
+    with Result(given.result) as result:
+        node = given.node or choose_node(result, given.dof)
+        deliver(draw(result, node, given.dof, given.wall), given, result, "_phase.png")
 
 
 if __name__ == "__main__":

@@ -6,7 +6,10 @@ columns hold the diagonal alone. Prints the number of equations and the size of 
 """
 
 import numpy as np
-from carom_results import BLUE, ORANGE, Results, ScriptError, make_parser, plt, run, save
+from carom_plots import BLUE, ORANGE, deliver, head, make_parser, plt
+from carom_results import Result
+from carom_script import ScriptError, run
+from carom_tables import BINS, minmax
 from matplotlib.colors import ListedColormap
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
@@ -14,14 +17,14 @@ from matplotlib.ticker import MaxNLocator
 MOST_CELLS = 1200  # equations up to which every entry is drawn as a cell
 
 
-def read(results):
+def read(result):
     """Column heights, and which equations are implicit."""
-    heights = np.atleast_1d(results.column("model", "profile")).astype(int)
-    implicit = np.atleast_1d(results.column("model", "implicit")) != 0
+    heights = np.atleast_1d(result.array("model/profile")).astype(int)
+    implicit = np.atleast_1d(result.array("model/implicit")) != 0
     if len(heights) != len(implicit) or len(heights) == 0:
-        raise ScriptError(f"'{results.path}': /model/profile and implicit differ in length")
+        raise ScriptError(f"'{result.path}': /model/profile and implicit differ in length")
     if heights.min() < 1 or (heights > np.arange(1, len(heights) + 1)).any():
-        raise ScriptError(f"'{results.path}': /model/profile has a height that no column can have")
+        raise ScriptError(f"'{result.path}': /model/profile has a height that no column can have")
     return heights, implicit
 
 
@@ -43,12 +46,14 @@ def draw_cells(axes, heights, implicit):
 
 
 def draw_outline(axes, heights, implicit):
-    """The area between skyline and diagonal."""
+    """The area between skyline and diagonal; of columns in one pixel the highest."""
     n = len(heights)
-    column = np.arange(1, n + 1)
+    bins = min(n, BINS)
     for chosen, colour in ((implicit, BLUE), (~implicit, ORANGE)):
+        top = minmax(np.where(chosen, heights, np.nan), bins)[1]
+        column = (np.arange(bins) + 0.5) * n / bins + 0.5
         axes.fill_between(
-            column, column - heights + 0.5, column + 0.5, where=chosen, step="mid",
+            column, column - top + 0.5, column + 0.5, where=~np.isnan(top), step="mid",
             color=colour, linewidth=1.5,
         )
     axes.set_xlim(0.5, n + 0.5)
@@ -56,17 +61,17 @@ def draw_outline(axes, heights, implicit):
     axes.set_aspect("equal")
 
 
-def draw(heights, implicit):
+def draw(result, heights, implicit):
     """The figure."""
     n = len(heights)
-    figure, axes = plt.subplots(figsize=(7.5, 7.9), layout="constrained")
+    figure, axes = plt.subplots(figsize=(7.5, 8.2), layout="constrained")
     (draw_cells if n <= MOST_CELLS else draw_outline)(axes, heights, implicit)
     axes.grid(False, which="major")
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(MaxNLocator(nbins=8, integer=True, min_n_ticks=1))
     axes.set_xlabel("column (equation)")
     axes.set_ylabel("row (equation)")
-    axes.set_title(f"{n} equations, {heights.sum()} entries, mean height {heights.mean():.1f}")
+    head(figure, result, f"{n} equations, {heights.sum()} entries, mean height {heights.mean():.1f}")
     handles = [
         Patch(color=BLUE, label=f"implicit ({implicit.sum()} columns)"),
         Patch(color=ORANGE, label=f"explicit only ({(~implicit).sum()} columns)"),
@@ -77,14 +82,13 @@ def draw(heights, implicit):
 
 def main():
     parser = make_parser(__doc__)
-    parser.add_argument("result", help="result file of carom")
-    arguments = parser.parse_args()
-    with Results(arguments.result) as results:
-        heights, implicit = read(results)
+    given = parser.parse_args()
+    with Result(given.result) as result:
+        heights, implicit = read(result)
         print(f"equations           {len(heights)}")
         print(f"profile size        {heights.sum()}")
         print(f"mean column height  {heights.mean():.2f}")
-        save(draw(heights, implicit), results.output(arguments.output, "_profile.png"))
+        deliver(draw(result, heights, implicit), given, result, "_profile.png")
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ import traceback
 from pathlib import Path
 
 from carom_deck import find_carom
-from carom_results import ScriptError, run
+from carom_script import ScriptError, run
 from report_page import Section, folded, page, picture_tag
 from report_parts import PARTS
 from report_runs import Runs

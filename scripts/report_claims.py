@@ -1,7 +1,7 @@
 """Claims of the source without a figure of their own, each put to runs of carom: for report.py."""
 
 import numpy as np
-from carom_results import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY, plt
+from carom_plots import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY, plt
 from exact_solutions import oscillator
 from report_figures import END, axes_with, fictitious, legend
 from report_runs import Case

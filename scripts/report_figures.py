@@ -8,7 +8,7 @@ FICTITIOUS FORCE and TRANSFORMATION come from; its claims are told in our words.
 from dataclasses import dataclass
 
 import numpy as np
-from carom_results import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, mark_events, plt
+from carom_plots import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, mark_events, plt
 from exact_solutions import oscillator, two_dof
 from report_runs import Case
 from report_verdicts import (

@@ -5,7 +5,7 @@ import io
 from dataclasses import dataclass, field
 from html import escape
 
-from carom_results import plt
+from carom_plots import plt
 from report_verdicts import FAILS, HOLDS, OPEN
 
 STYLE = """

@@ -12,7 +12,8 @@ import subprocess
 import sys
 from html import escape
 
-from carom_results import Results, ScriptError
+from carom_results import Result
+from carom_script import ScriptError
 from report_page import Section, folded, image_tag, table
 from report_runs import ROOT
 from report_verdicts import at_most, largest
@@ -141,12 +142,12 @@ def trades(carom, folder, jobs):
 
 def recommended(section, folder, wanted):
     """Adds to the section of a trade what tradeoff.py recommends, and how that turned out."""
-    with Results(str(folder / "tradeoff.h5")) as results:
+    with Result(str(folder / "tradeoff.h5")) as results:
         attributes = results.file.attrs
         said = f"{attributes['recommendation']} Errors against {attributes['truth']}."
         section.body.insert(0, f"<p>{escape(said)}</p>")
-        asked = results.file["points/tolerance"].asstr()[:]
-        found = results.column("points", "displacement") if (asked != "").any() else None
+        asked = results.array("points/tolerance")
+        found = results.array("points/displacement") if (asked != "").any() else None
     again = re.search(r"^verified: run again it is off by ([-+.\deE]+)", section.output, re.M)
     if again:
         section.verdicts.append(at_most("what is recommended for an error delivers it when run again",

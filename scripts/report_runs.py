@@ -12,7 +12,8 @@ from pathlib import Path
 
 import numpy as np
 from carom_deck import Deck, number_text, run_deck
-from carom_results import Results, ScriptError
+from carom_results import Result
+from carom_script import ScriptError
 
 ROOT = Path(__file__).resolve().parents[1]
 LIMIT = 300.0       # seconds that a run may take
@@ -67,17 +68,14 @@ class Run:
     """What a finished run left; arrays by name."""
 
     def __init__(self, done):
-        self.done, self.costs, self.results = done, done.costs, Results(done.result)
+        self.done, self.costs, self.results = done, done.costs, Result(done.result)
 
     def __getitem__(self, name):
-        group, _, rest = name.partition("/")
-        return self.results.column(group, rest)
+        return self.results.array(name)
 
     def events(self, kind="impact"):
         """The rows of /events of one kind."""
-        events = self.results.events()
-        mine = events["kind"] == kind
-        return {name: np.asarray(values)[mine] for name, values in events.items()}
+        return self.results.events.filter(kind=kind)
 
 
 class Runs:
@@ -127,6 +125,6 @@ class Runs:
     def close(self, keep=False):
         """Closes all result files, and removes them unless they are to be kept."""
         for run in self.found.values():
-            run.results.file.close()
+            run.results.close()
         if not keep:
             shutil.rmtree(self.folder / "runs")

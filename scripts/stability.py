@@ -22,7 +22,7 @@ import h5py
 import numpy as np
 
 from carom_deck import find_carom
-from carom_results import run
+from carom_script import run
 from stability_measures import (
     accepted_limit, measure_bar, measure_bouncing, measure_coupling, measure_floor,
     measure_impact_steps, measure_limits, measure_schemes, recurring,

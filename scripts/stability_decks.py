@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from carom_deck import number_text, run_deck
-from carom_results import Results, ScriptError
+from carom_results import Result
+from carom_script import ScriptError
 
 
 class Outcome:
@@ -38,9 +39,9 @@ def run_text(carom, text, columns=()):
         if done.status not in (0, 4):
             raise ScriptError(f"{carom} run ended with status {done.status}: {done.last_line}")
         values = {}
-        with Results(result) if columns else nullcontext() as results:
+        with Result(result) if columns else nullcontext() as results:
             for path in columns:
-                values[path] = results.column(*path.rsplit("/", 1))
+                values[path] = results.array(path)
         return Outcome(done.status, values)
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from carom_results import ScriptError
+from carom_script import ScriptError
 from stability_decks import (
     bouncing, bouncing_bar, coupled_pairs, impact_in_step, is_refused, oscillators, run_text,
 )

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from carom_results import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY, plt, save
+from carom_plots import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY, plt, save
 
 STYLES = ((BLUE, "o", "-"), (RED, "s", "--"), (GREEN, "^", "-."), (ORANGE, "D", ":"),
           (PURPLE, "v", "-"), (BLACK, "x", "--"), (SKY, "P", "-."))

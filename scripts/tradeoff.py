@@ -22,7 +22,8 @@ import tempfile
 from pathlib import Path
 
 from carom_deck import Deck, find_carom, number_text, parse_number, run_deck
-from carom_results import ScriptError, save
+from carom_plots import save
+from carom_script import ScriptError
 from tradeoff_advice import Row, advise, choose_cost, cost_at, fit_series, series_of
 from tradeoff_errors import ERRORS, Trace, errors_against, exact_errors
 from tradeoff_exact import CASES, exact_solution, recognise

@@ -14,7 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from carom_results import Results, ScriptError
+from carom_results import Result
+from carom_script import ScriptError
 
 ERRORS = ["displacement", "force", "impulse", "energy"]
 MOST_ROWS = 20000
@@ -43,20 +44,20 @@ class Trace:
     @classmethod
     def of_result(cls, path, patterns="", every=1):
         """Reads a result file; `every` thins the rows where there are too many."""
-        with Results(path) as results:
-            time = results.column("history", "time")
+        with Result(path) as results:
+            time = results.time
             names = displacement_columns(results, patterns)
-            known = set(results.columns("history"))
+            known = results.history.names
             speeds = [name.replace("/U", "/V") for name in names]
             impulses = [name for name in known if name.endswith("/impulse")]
             rows = thinned(len(time), every)
-            u = [results.column("history", name)[rows] for name in names]
-            v = [results.column("history", n)[rows] if n in known else 0.0 * time[rows] + np.nan
+            u = [results.history[name][:][rows] for name in names]
+            v = [results.history[n][:][rows] if n in known else 0.0 * time[rows] + np.nan
                  for n in speeds]
-            parts = [results.column("history", name) for name in impulses]
+            parts = [results.history[name][:] for name in impulses]
             total = np.cumsum(np.sum(parts, axis=0)) if parts else np.zeros(len(time))
-            energy = results.column("energy", "total")
-            jumps = np.unique(results.events()["time"])
+            energy = results.energy.total
+            jumps = np.unique(results.events.time)
             return cls(time[rows], table(u, time[rows]), table(v, time[rows]), total[rows], energy[rows],
                        jumps, names)
 
@@ -82,8 +83,8 @@ class Trace:
 def displacement_columns(results, patterns):
     """The columns of /history to compare: as asked, else all displacements, evenly chosen if many."""
     if patterns:
-        return results.select("history", patterns)
-    names = [n for n in results.columns("history") if n.split("/")[-1] in ("U1", "U2", "U3")]
+        return results.history.select(patterns)
+    names = [n for n in results.history.names if n.split("/")[-1] in ("U1", "U2", "U3")]
     every = -(-len(names) // MOST_COLUMNS) or 1
     return names[::every]
 
@@ -104,23 +105,23 @@ def thinned(n, every):
 
 def exact_errors(path, exact, patterns=""):
     """The errors of a result file against an exact solution, by all its increments."""
-    with Results(path) as results, np.errstate(all="ignore"):
-        time = results.column("history", "time")
+    with Result(path) as results, np.errstate(all="ignore"):
+        time = results.time
         found = {}
         if exact.motion:
-            u = np.array([results.column("history", name) for name in exact.columns])
+            u = np.array([results.history[name][:] for name in exact.columns])
             truth = exact.motion(time)
             if patterns:
-                chosen = [exact.columns.index(n) for n in results.select("history", patterns)
+                chosen = [exact.columns.index(n) for n in results.history.select(patterns)
                           if n in exact.columns]
                 u, truth = u[chosen], truth[chosen]
             found["displacement"] = np.max(np.abs(u - truth)) / np.max(np.abs(truth))
-        names = [n for n in results.columns("history") if n.endswith("/impulse")]
+        names = [n for n in results.history.names if n.endswith("/impulse")]
         if exact.impulse and names:
-            parts = np.sum([results.column("history", name) for name in names], axis=0)
+            parts = np.sum([results.history[name][:] for name in names], axis=0)
             found.update(impulse_errors(np.cumsum(parts), exact.impulse(time)))
         if exact.energy:
-            energy = results.column("energy", "total")
+            energy = results.energy.total
             truth = exact.energy(time[[0, -1]])
             found["energy"] = abs(energy[-1] - truth[-1]) / max(truth)
         return {name: float(value) for name, value in found.items()}

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from carom_deck import Deck, parse_number, squeezed
-from carom_results import ScriptError
+from carom_script import ScriptError
 from contact_solutions import bars_head_on
 from exact_solutions import bouncing_ball, masses_in_line, oscillator, two_dof
 

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 
 from carom_deck import Deck, number_text, parse_number, squeezed
-from carom_results import ScriptError
+from carom_script import ScriptError
 
 METHODS = ["TRANSFORMATION", "FICTITIOUS FORCE", "PENALTY", "LAGRANGE"]
 

@@ -6,7 +6,7 @@ import h5py
 import numpy as np
 
 from carom_deck import COSTS
-from carom_results import ScriptError
+from carom_script import ScriptError
 from tradeoff_errors import ERRORS
 
 TEXT = h5py.string_dtype()

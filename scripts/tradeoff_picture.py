@@ -5,7 +5,7 @@ import textwrap
 import numpy as np
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from carom_results import BLACK, COLOURS, RED, plt
+from carom_plots import BLACK, COLOURS, RED, plt
 from tradeoff_advice import front, grouped, series_of
 
 MARKERS = "osD^vP*Xh<>p"

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from carom_deck import run_deck, squeezed
-from carom_results import ScriptError
+from carom_script import ScriptError
 from tradeoff_advice import grouped, series_of
 from tradeoff_errors import Reference, Trace, extrapolate
 from tradeoff_grid import edited_deck

@@ -21,7 +21,8 @@ import time
 from pathlib import Path
 
 from carom_deck import Deck, run_deck
-from carom_results import Results, ScriptError
+from carom_results import Result
+from carom_script import ScriptError
 from tradeoff_errors import Trace, exact_errors
 from tradeoff_exact import exact_solution
 from tradeoff_grid import content_key, edited_deck
@@ -175,9 +176,9 @@ def reason_of(done):
 
 def look_at(trace, done):
     """Whether a run that ended well has diverged, or lost impacts to the cap of events."""
-    with Results(done.result) as results:
-        kinds = results.events()["kind"]
-        work = results.column("energy", "external_work")
+    with Result(done.result) as results:
+        kinds = results.events.kind
+        work = results.energy.external_work
     capped = int((kinds == "limit").sum())
     found = {"capped": capped}
     if done.status != 0:

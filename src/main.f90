@@ -4,8 +4,10 @@ program carom
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
    use, intrinsic :: iso_c_binding, only: c_int
    use errors, only: error_type, status_done, status_interrupted
-   use command_line, only: command_type, read_command, usage_text, version_text, &
-         command_run, command_check, command_version
+   use command_line, only: command_type, read_command, usage_text, &
+         command_run, command_check, command_version, command_reference
+   use deck_help, only: print_help
+   use program_version, only: version_text
    use simulation, only: run_deck
    use json_text, only: json_type
    use json_report, only: open_report, close_report
@@ -46,8 +48,10 @@ program carom
          call run_deck(command, report, error)
       case (command_check)
          call check_deck(command, report, error)
+      case (command_reference)
+         call print_help(command%topic, error)
       case (command_version)
-         write (output_unit, '(a)') 'carom '//version_text
+         write (output_unit, '(a)') 'carom '//version_text()
       case default
          write (output_unit, '(a)') usage_text()
       end select

@@ -111,7 +111,8 @@ contains
          cure = 'the axis is y and x is the radius: move the mesh to x of zero or more'
       case (fault_clockwise)
          cause = 'is numbered clockwise or has no area: its Jacobian is nowhere positive'
-         cure = 'list its nodes counterclockwise, corners first, seen with x right and y up'
+         cure = 'list its nodes counterclockwise, corners first, seen with x right and y up; '// &
+               'in gmsh turn the surface: ReverseMesh Surface {its number};'
       case default
          cause = 'is folded: its Jacobian is zero or negative somewhere'
          cure = 'list its nodes around the edge, corners first, or mend its shape'

@@ -4,11 +4,12 @@ module card_rules
    use memory_shortage, only: check_allocation
    use places, only: place_type, source_type, fail_at
    use words, only: word_length, squeezed, find_word, advice
+   use foreign_words, only: keyword_cure
    use cards, only: card_type, parameter_type, has_parameter
    implicit none
    private
 
-   public :: check_keyword, check_card, usage_of, name_of, is_note_card
+   public :: check_keyword, check_card, usage_of, name_of, is_note_card, n_rules, rule_text
 
    integer, parameter :: rule_length = 200
 
@@ -20,7 +21,8 @@ module card_rules
          'PARAMETER;any;;name = number', &
          'INCLUDE;any;INPUT=!;-', &
          'NODE;model;NSET=;id, x, y[, z]', &
-         'NSET;model;NSET=!/GENERATE;node ids and sets, or with GENERATE first, last[, step]', &
+         'NSET;model;NSET=!/GENERATE/ELSET=;node ids and sets, or with GENERATE first, '// &
+         'last[, step]; with ELSET none: the nodes of its elements', &
          'ELSET;model;ELSET=!/GENERATE;element ids and sets, or with GENERATE '// &
          'first, last[, step]', &
          'ELEMENT;model;TYPE=!/ELSET=;id, nodes', &
@@ -71,13 +73,23 @@ module card_rules
          'RESTART;any;WRITE/FREQUENCY=/OVERLAY/READ/STEP=/INC=;-', &
          'PREPRINT;note;;text', &
          'PRINT;note;;text', &
-         'OUTPUT;note;;text', &
+         'OUTPUT;note;COMPRESS?;text', &
          'NODE OUTPUT;note;;text', &
          'ELEMENT OUTPUT;note;;text', &
          'CONTACT OUTPUT;note;;text', &
          'ENERGY OUTPUT;note;;text']
 
+   integer, parameter :: n_rules = size(rules)
+
 contains
+
+   !> A line of the list as it stands above.
+   pure function rule_text(rule) result(text)
+      integer, intent(in) :: rule
+      character(len=:), allocatable :: text
+
+      text = trim(rules(rule))
+   end function rule_text
 
    !> What a data line of a card holds.
    pure function usage_of(rule) result(usage)
@@ -109,11 +121,13 @@ contains
       type(card_type), intent(inout) :: card
       type(source_type), intent(in) :: source
       type(error_type), allocatable, intent(out) :: error
+      character(len=:), allocatable :: cure
 
       card%rule = find_word(card%keyword, keywords())
       if (card%rule > 0) return
-      call fail_at(error, source, card%place, "unknown keyword '*"//card%keyword//"'", &
-            cure=advice(card%keyword, keywords()))
+      cure = keyword_cure(card%keyword)
+      if (cure == '') cure = advice(card%keyword, keywords())
+      call fail_at(error, source, card%place, "unknown keyword '*"//card%keyword//"'", cure=cure)
    end subroutine check_keyword
 
    !> Checks level, parameters and the presence of data of a card whose rule is set.
@@ -247,6 +261,7 @@ contains
       character(len=:), allocatable :: usage
 
       usage = usage_of(card%rule)
+      if (card%keyword == 'NSET' .and. has_parameter(card, 'ELSET')) usage = '-'
       if (usage == '-' .and. card%last >= card%first) then
          call fail_at(error, source, data(card%first), name_of(card%rule)// &
                ' takes no data lines', cure='remove the line, or put its keyword before it')

@@ -5,11 +5,13 @@ module mesh_reader
    use places, only: place_type, source_type, fail_at, line_text
    use mesh, only: element_table_type
    use model, only: model_type
-   use cards, only: deck_type, card_type, get_word
+   use cards, only: deck_type, card_type, get_word, parameter_index
    use fields, only: fields_type, split_line, check_count, field_place
    use fields, only: get_integer, get_reals
    use plain_lines, only: scan_integers, scan_point
+   use foreign_words, only: type_cure
    use element_types, only: type_names, kinds_of_types, nodes_of_types, most_nodes
+   use words, only: find_word
    use text, only: to_text
    use memory_shortage, only: check_allocation
    implicit none
@@ -156,12 +158,29 @@ contains
       n_nodes = 0
       do i = 1, deck%n_cards
          if (deck%cards(i)%keyword /= 'ELEMENT') cycle
-         call get_word(deck%cards(i), 'TYPE', type_names, choice, model%source, error)
+         call get_type(deck%cards(i), choice, model%source, error)
          if (allocated(error)) return
          n_nodes = n_nodes + &
                nodes_of_types(choice)*(deck%cards(i)%last - deck%cards(i)%first + 1)
       end do
    end subroutine count_nodes
+
+   !> The element type of a card; of one that only others know what to do about it.
+   subroutine get_type(card, choice, source, error)
+      type(card_type), intent(in) :: card
+      integer, intent(out) :: choice   !! position in `type_names`
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      character(len=:), allocatable :: cure
+
+      call get_word(card, 'TYPE', type_names, choice, source, error)
+      if (.not. allocated(error)) return
+      associate (given => card%parameters(parameter_index(card, 'TYPE')))
+         cure = type_cure(given%value)
+         if (cure /= '') call fail_at(error, source, given%place, &
+               "unknown value '"//given%value//"' of TYPE", cure=cure)
+      end associate
+   end subroutine get_type
 
    subroutine read_element_card(model, deck, card, error)
       type(model_type), intent(inout) :: model
@@ -172,7 +191,7 @@ contains
       integer :: numbers(1 + most_nodes), choice, line, n
       logical :: done
 
-      call get_word(card, 'TYPE', type_names, choice, model%source, error)
+      call get_type(card, choice, model%source, error)
       if (allocated(error)) return
       n = 1 + nodes_of_types(choice)
       line = card%first
@@ -253,8 +272,11 @@ contains
          if (allocated(error)) return
          line = line + 1
          n_here = size(numbers) - n_read
-         call check_count(fields, n_here, source, error)
-         if (allocated(error)) return
+         if (fields%n > n_here) then
+            call fail_at(error, source, field_place(fields, n_here + 1), &
+                  'too many fields: at most '//to_text(n_here)//' here', cure=line_cure(card))
+            return
+         end if
          if (fields%continued .and. line <= card%last) n_here = min(n_here, fields%n)
          do k = 1, n_here
             n_read = n_read + 1
@@ -264,6 +286,19 @@ contains
          end do
       end do
    end subroutine read_numbers
+
+   !> What a line of an element card holds.
+   pure function line_cure(card) result(cure)
+      type(card_type), intent(in) :: card
+      character(len=:), allocatable :: cure
+      integer :: choice
+
+      associate (name => card%parameters(parameter_index(card, 'TYPE'))%value)
+         choice = find_word(name, type_names)
+         cure = 'a line is: id, '//to_text(nodes_of_types(choice))//' nodes of the '// &
+               trim(type_names(choice))//' element; gmsh meshes are of Mesh.ElementOrder 1 or 2'
+      end associate
+   end function line_cure
 
    pure function what_is(position) result(what)
       integer, intent(in) :: position

@@ -9,7 +9,7 @@ module set_reader
    use model_building, only: append
    use set_drafts, only: draft_type, drafts_type, resolve_sets
    use name_map, only: name_map_type
-   use cards, only: deck_type, card_type, get_name_parameter, has_parameter
+   use cards, only: deck_type, card_type, get_name_parameter, has_parameter, parameter_place
    use fields, only: fields_type, split_line, check_count, field_place, is_given, is_integer
    use fields, only: get_integer, get_name
    use plain_lines, only: scan_integers
@@ -30,28 +30,32 @@ contains
       type(model_type), intent(inout) :: model
       type(deck_type), intent(in) :: deck
       type(error_type), allocatable, intent(out) :: error
+      type(drafts_type) :: family
 
-      call read_family(model%node_sets, 'node', ['NSET', 'NODE'], &
-            model%node_set_of, model%nodes%index_of, deck, model%source, error)
+      family%what = 'element'
+      call read_family(family, ['ELSET  ', 'ELEMENT'], model%elements%index_of, deck, &
+            model%source, error)
+      if (.not. allocated(error)) call resolve_sets(family, model%source, error)
       if (allocated(error)) return
-      call read_family(model%element_sets, 'element', ['ELSET  ', 'ELEMENT'], &
-            model%element_set_of, model%elements%index_of, deck, model%source, error)
+      call keep_family(model%element_sets, model%element_set_of, family)
+      family = drafts_type(what='node')
+      call read_family(family, ['NSET', 'NODE'], model%nodes%index_of, deck, model%source, error)
+      if (.not. allocated(error)) call add_nodes_of_elements(family, model, deck, error)
+      if (.not. allocated(error)) call resolve_sets(family, model%source, error)
+      if (allocated(error)) return
+      call keep_family(model%node_sets, model%node_set_of, family)
    end subroutine read_sets
 
    !> The sets of nodes or of elements, from their own cards and those that define members.
-   subroutine read_family(sets, what, keywords, set_of, index_of, deck, source, error)
-      type(set_type), allocatable, intent(out) :: sets(:)
-      character(len=*), intent(in) :: what
+   subroutine read_family(family, keywords, index_of, deck, source, error)
+      type(drafts_type), intent(inout) :: family
       character(len=*), intent(in) :: keywords(2)   !! the first one is the parameter's name too
-      type(name_map_type), intent(out) :: set_of
       type(integer_map_type), intent(in) :: index_of
       type(deck_type), intent(in) :: deck
       type(source_type), intent(in) :: source
       type(error_type), allocatable, intent(out) :: error
-      type(drafts_type) :: family
-      integer :: i, set, status
+      integer :: i, set
 
-      family%what = what
       call name_sets(family, keywords, trim(keywords(1)), deck, source, error)
       if (allocated(error)) return
       do i = 1, deck%n_cards
@@ -62,8 +66,15 @@ contains
          call read_members(family, set, deck%cards(i), index_of, deck, source, error)
          if (allocated(error)) return
       end do
-      call resolve_sets(family, source, error)
-      if (allocated(error)) return
+   end subroutine read_family
+
+   !> Moves sets that are done into the model.
+   subroutine keep_family(sets, set_of, family)
+      type(set_type), allocatable, intent(out) :: sets(:)
+      type(name_map_type), intent(out) :: set_of
+      type(drafts_type), intent(inout) :: family
+      integer :: i, status
+
       set_of = family%set_of
       allocate (sets(family%n), stat=status)
       call check_allocation(status)
@@ -72,7 +83,40 @@ contains
          sets(i)%place = family%sets(i)%place
          call move_alloc(family%sets(i)%members, sets(i)%members)
       end do
-   end subroutine read_family
+   end subroutine keep_family
+
+   !> `*NSET, ELSET=`: all nodes of the elements of a set.
+   subroutine add_nodes_of_elements(family, model, deck, error)
+      type(drafts_type), intent(inout) :: family
+      type(model_type), intent(in) :: model
+      type(deck_type), intent(in) :: deck
+      type(error_type), allocatable, intent(out) :: error
+      character(len=name_length) :: name
+      integer :: i, j, k, set, part
+
+      do i = 1, deck%n_cards
+         if (deck%cards(i)%keyword /= 'NSET') cycle
+         if (.not. has_parameter(deck%cards(i), 'ELSET')) cycle
+         if (has_parameter(deck%cards(i), 'GENERATE')) then
+            call fail_at(error, model%source, parameter_place(deck%cards(i), 'GENERATE'), &
+                  'GENERATE means nothing with ELSET', cure='write two *NSET cards of one name')
+            return
+         end if
+         call open_set(family, deck%cards(i), 'NSET', set, model%source, error)
+         if (allocated(error)) return
+         call get_name_parameter(deck%cards(i), 'ELSET', name, model%source, error)
+         if (allocated(error)) return
+         call find_element_set(model, name, parameter_place(deck%cards(i), 'ELSET'), part, error)
+         if (allocated(error)) return
+         associate (draft => family%drafts(set), members => model%element_sets(part)%members)
+            do j = 1, size(members)
+               do k = model%elements%first(members(j)), model%elements%first(members(j) + 1) - 1
+                  call append(draft%members, draft%n_members, model%elements%nodes(k))
+               end do
+            end do
+         end associate
+      end do
+   end subroutine add_nodes_of_elements
 
    !> Makes an empty draft for every name, so that sets may be used before they are defined.
    subroutine name_sets(family, keywords, parameter_name, deck, source, error)
@@ -320,10 +364,20 @@ contains
       type(place_type), intent(in) :: place
       integer, intent(out) :: set
       type(error_type), allocatable, intent(out) :: error
+      character(len=:), allocatable :: cause
 
       set = model%node_set_of%find(name)
-      if (set == 0) call fail_at(error, model%source, place, 'no such node set: '//trim(name), &
-            cure='define it with *NSET; '//advice(name, [model%node_sets%name]))
+      if (set > 0) return
+      cause = 'no such node set: '//trim(name)
+      if (model%element_set_of%find(name) > 0) then
+         call fail_at(error, model%source, place, cause//'; '//trim(name)// &
+               ' is a set of elements', &
+               cure='make a set of their nodes before the first *STEP: *NSET, NSET='// &
+               trim(name)//', ELSET='//trim(name))
+      else
+         call fail_at(error, model%source, place, cause, &
+               cure='define it with *NSET; '//advice(name, [model%node_sets%name]))
+      end if
    end subroutine find_node_set
 
    !> Index of an element set by its name.

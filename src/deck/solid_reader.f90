@@ -117,7 +117,8 @@ contains
                count_cards(deck, 'DYNAMIC') + count_cards(deck, 'FREQUENCY') > 0) then
             call fail_at(error, model%source, parameter_place(card, 'MATERIAL'), &
                   "material '"//trim(used%name)//"' has no *DENSITY", &
-                  cure='a *DYNAMIC or *FREQUENCY step needs the density')
+                  cure='write *DENSITY and the density below *MATERIAL: every *DYNAMIC and ' &
+                  //'*FREQUENCY step needs it (of steel 7850 in kg and m, 7.85e-9 in t and mm)')
          end if
       end associate
    end subroutine read_material

@@ -5,15 +5,17 @@ module solid
    use kinds, only: wp
    use congruence, only: find_classes
    use elastic, only: plane_stress, axisymmetric, elastic_matrix, thickness_strain
+   use memory_shortage, only: check_allocation
    use element_blocks, only: new_blocks
    use element_interface, only: recovered_stress, recovered_strain, recovered_peeq, &
          recovered_energy
-   use j2_plastic, only: j2_type, new_j2, n_state, state_peeq, state_work
    use plane_freedoms, only: in_plane, add_in_direction, spread_in_plane, outer
-   use plastic_forces, only: find_plastic_forces, add_hourglass_forces
+   use point_law, only: point_law_type
+   use law_forces, only: find_law_forces, add_hourglass_forces
    use solid_body, only: solid_body_type
    use solid_geometry, only: solid_shape_type
    use solid_integrals, only: lumped_masses
+   use solid_law, only: make_law
    use solid_kinematics, only: kinematics_type, new_kinematics
    use solid_material, only: solid_material_type, hourglass_share
    use stored_stiffness, only: stored_stiffness_type, new_stored_stiffness, keep_stiffness, &
@@ -27,12 +29,12 @@ module solid
    integer, parameter :: fewest_in_block = 8
 
    !> Solids of one section. B-bar (mean dilatation, of four-node quadrilaterals in plane strain and
-   !> axisymmetry) is off unless the shape asks for it. A history is n_state variables a point,
-   !> point after point; an elastic solid has none.
+   !> axisymmetry) is off unless the shape asks for it. A history is the law's n_state variables
+   !> a point, point after point; an elastic solid has neither.
    type, extends(solid_body_type) :: solid_type
       type(kinematics_type) :: kinematics           !! of every class
       type(stored_stiffness_type) :: stored         !! of an elastic solid
-      type(j2_type) :: law                          !! of a plastic solid
+      class(point_law_type), allocatable :: law     !! of a solid that is not elastic
       real(wp) :: elastic(4, 4) = 0.0_wp
    contains
       procedure :: stiffness
@@ -46,14 +48,15 @@ module solid
 contains
 
    !> A group of solids; the shapes must be without faults (find_fault).
-   pure subroutine new_solid(self, shape, x, material, lumped)
+   subroutine new_solid(self, shape, x, material, lumped, law)
       type(solid_type), intent(out) :: self
       type(solid_shape_type), intent(in) :: shape
       real(wp), intent(in) :: x(:, :, :)            !! (2, n_nodes, n_elements)
       type(solid_material_type), intent(in) :: material
       logical, intent(in) :: lumped                 !! the group's mass matrix
+      class(point_law_type), intent(in), optional :: law   !! in place of the material's
       integer, allocatable :: first(:)
-      integer :: i
+      integer :: i, status
 
       self%shape = shape
       self%material = material
@@ -71,15 +74,19 @@ contains
       ! 1/9 for a square of four nodes, a little less for distorted and axisymmetric elements
       self%least_mass_share = 0.09_wp
       self%is_solid = .true.
-      self%linear = .not. material%plastic
+      if (present(law)) then
+         allocate (self%law, source=law, stat=status)
+         call check_allocation(status)
+      else
+         call make_law(material, shape%plane, self%law)
+      end if
+      self%linear = .not. allocated(self%law)
       if (self%linear) then
          call store_stiffness(self, size(first))
          return
       end if
       call new_blocks(self%blocks, [(1, i=1, self%n_elements)])
-      self%n_history = n_state*self%n_points
-      call new_j2(self%law, [material%young, material%poisson], shape%plane, material%kinematic, &
-            material%hardening(1, :), material%hardening(2, :))
+      self%n_history = self%law%n_state*self%n_points
    end subroutine new_solid
 
    !> Keeps the stiffness of every class where blocks are well filled with elements of one, else
@@ -108,8 +115,8 @@ contains
       real(wp), intent(in) :: d(:), history(:)
       real(wp), intent(out) :: matrix(:, :)
       real(wp) :: b(4, 2*self%n_nodes), sum_b(2*self%n_nodes, 2*self%n_nodes), tangent(4, 4)
-      real(wp) :: u(2, self%n_nodes), stress(4), updated(n_state)
-      integer :: p, i, c
+      real(wp) :: u(2, self%n_nodes), stress(4), updated(self%n_history)
+      integer :: p, i, c, first, last
 
       c = self%class(e)
       if (self%linear) then
@@ -121,8 +128,9 @@ contains
       sum_b = 0.0_wp
       do p = 1, self%n_points
          b = self%kinematics%strain_matrix(p, c)
-         call self%law%update(self%kinematics%strain_at(p, c, u), &
-               history((p - 1)*n_state + 1:p*n_state), stress, updated, tangent)
+         call find_state(self, p, first, last)
+         call self%law%update(self%kinematics%strain_at(p, c, u), history(first:last), stress, &
+               updated(first:last), tangent)
          sum_b = sum_b + matmul(transpose(b), &
                matmul(self%kinematics%volume(p, c)*tangent, b))
       end do
@@ -162,7 +170,7 @@ contains
       integer :: b, i, from, to
 
       if (.not. self%linear) then
-         call add_plastic_chunk(self, chunk, ien, u, history, force, updated, energy)
+         call add_law_chunk(self, chunk, ien, u, history, force, updated, energy)
          return
       end if
       associate (blocks => self%blocks)
@@ -177,7 +185,7 @@ contains
       end associate
    end subroutine add_chunk_forces
 
-   pure subroutine add_plastic_chunk(self, chunk, ien, u, history, force, updated, energy)
+   pure subroutine add_law_chunk(self, chunk, ien, u, history, force, updated, energy)
       class(solid_type), intent(in) :: self
       integer, intent(in) :: chunk
       integer, intent(in), contiguous :: ien(:, :)
@@ -193,14 +201,14 @@ contains
          ! these blocks have the elements in their own order
          e = self%blocks%first(self%blocks%chunk_first(chunk)) + k - 1
          local = u(:, ien(:, k))
-         call find_plastic_forces(self%law, self%kinematics, self%class(e), local, history(:, e), &
+         call find_law_forces(self%law, self%kinematics, self%class(e), local, history(:, e), &
                updated(:, e), f, energy)
          if (size(self%kinematics%hourglass, 2) > 0) call add_hourglass_forces( &
                hourglass_stiffness(self), self%kinematics%hourglass(:, self%class(e)), local, f, &
                energy(1))
          force(:, ien(:, k)) = force(:, ien(:, k)) + f
       end do
-   end subroutine add_plastic_chunk
+   end subroutine add_law_chunk
 
    !> Forces of one element and its history at displacements u.
    pure subroutine element_force(self, e, u, history, force, updated)
@@ -214,9 +222,8 @@ contains
       c = self%class(e)
       force = 0.0_wp
       do p = 1, self%n_points
-         if (self%material%plastic) then
-            first = (p - 1)*n_state + 1
-            last = p*n_state
+         if (.not. self%linear) then
+            call find_state(self, p, first, last)
             call self%law%update(self%kinematics%strain_at(p, c, u), history(first:last), &
                   stress, updated(first:last), tangent)
          else
@@ -232,7 +239,7 @@ contains
       end associate
    end subroutine element_force
 
-   !> Half of stress : elastic strain, with what the hourglass modes hold.
+   !> What the law, or half of stress : strain, holds, with what the hourglass modes hold.
    pure function strain_energy(self, d, history) result(energy)
       class(solid_type), intent(in) :: self
       real(wp), intent(in) :: d(:, :), history(:, :)
@@ -245,8 +252,10 @@ contains
          c = self%class(e)
          u = in_plane(d(:, e))
          do p = 1, self%n_points
-            strain = self%kinematics%strain_at(p, c, u) - plastic_strain(self, p, history(:, e))
-            energy = energy + self%kinematics%volume(p, c)*energy_density(self, strain)
+            strain = self%kinematics%strain_at(p, c, u)
+            energy = energy + self%kinematics%volume(p, c) &
+                  *energy_density(self, p, strain, history(:, e), &
+                  stress_at(self, p, strain, history(:, e)))
          end do
          if (size(self%kinematics%hourglass, 2) > 0) energy = energy + hourglass_stiffness(self) &
                *sum(matmul(u, self%kinematics%hourglass(:, c))**2)/2.0_wp
@@ -257,13 +266,17 @@ contains
       class(solid_type), intent(in) :: self
       real(wp), intent(in) :: history(:, :)
       real(wp) :: work
-      integer :: e
+      real(wp) :: density(self%n_points)
+      integer :: e, p, first, last
 
       work = 0.0_wp
-      if (.not. self%material%plastic) return
+      if (self%linear) return
       do e = 1, self%n_elements
-         work = work + dot_product(self%kinematics%volume(:, self%class(e)), &
-               history(state_work::n_state, e))
+         do p = 1, self%n_points
+            call find_state(self, p, first, last)
+            density(p) = self%law%dissipated(history(first:last, e))
+         end do
+         work = work + dot_product(self%kinematics%volume(:, self%class(e)), density)
       end do
    end function plastic_work
 
@@ -272,23 +285,22 @@ contains
       integer, intent(in) :: e
       real(wp), intent(in) :: d(:), history(:)
       real(wp), intent(out) :: values(:, :)
-      real(wp) :: u(2, self%n_nodes), strain(4), plastic(4)
-      integer :: p, c
+      real(wp) :: u(2, self%n_nodes), strain(4), stress(4)
+      integer :: p, c, first, last
 
       c = self%class(e)
       values = 0.0_wp
       u = in_plane(d)
       do p = 1, self%n_points
-         plastic = plastic_strain(self, p, history)
          strain = self%kinematics%strain_at(p, c, u)
-         if (self%shape%plane == plane_stress) strain(3) = plastic(3) &
-               + thickness_strain(self%material%poisson, strain - plastic)
-         values(recovered_stress:recovered_stress + 3, p) = &
-               matmul(self%elastic, strain - plastic)
+         if (self%shape%plane == plane_stress) strain(3) = strain_across(self, p, strain, history)
+         stress = stress_at(self, p, strain, history)
+         values(recovered_stress:recovered_stress + 3, p) = stress
          values(recovered_strain:recovered_strain + 3, p) = strain
-         if (self%material%plastic) values(recovered_peeq, p) = &
-               history((p - 1)*n_state + state_peeq)
-         values(recovered_energy, p) = energy_density(self, strain - plastic)
+         values(recovered_energy, p) = energy_density(self, p, strain, history, stress)
+         if (self%linear) cycle
+         call find_state(self, p, first, last)
+         values(recovered_peeq, p) = self%law%plastic_measure(history(first:last))
       end do
    end subroutine recover
 
@@ -299,23 +311,62 @@ contains
       factor = hourglass_share*self%elastic(4, 4)
    end function hourglass_stiffness
 
-   !> Plastic strain at a point of an element, from the element's history.
-   pure function plastic_strain(self, p, history) result(strain)
+   !> Where the state of a point is in the history of an element.
+   pure subroutine find_state(self, p, first, last)
       class(solid_type), intent(in) :: self
       integer, intent(in) :: p
-      real(wp), intent(in) :: history(:)
-      real(wp) :: strain(4)
+      integer, intent(out) :: first, last
 
-      strain = 0.0_wp
-      if (self%material%plastic) strain = history((p - 1)*n_state + 1:(p - 1)*n_state + 4)
-   end function plastic_strain
+      first = (p - 1)*self%law%n_state + 1
+      last = p*self%law%n_state
+   end subroutine find_state
 
-   pure function energy_density(self, strain) result(energy)
+   !> Stress at a point of an element, from the element's history.
+   pure function stress_at(self, p, strain, history) result(stress)
       class(solid_type), intent(in) :: self
-      real(wp), intent(in) :: strain(4)         !! elastic
-      real(wp) :: energy
+      integer, intent(in) :: p
+      real(wp), intent(in) :: strain(4), history(:)
+      real(wp) :: stress(4)
+      integer :: first, last
 
-      energy = dot_product(strain, matmul(self%elastic, strain))/2.0_wp
+      if (self%linear) then
+         stress = matmul(self%elastic, strain)
+      else
+         call find_state(self, p, first, last)
+         stress = self%law%stress_at(strain, history(first:last))
+      end if
+   end function stress_at
+
+   !> Strain 33 in plane stress.
+   pure function strain_across(self, p, strain, history) result(normal)
+      class(solid_type), intent(in) :: self
+      integer, intent(in) :: p
+      real(wp), intent(in) :: strain(4), history(:)
+      real(wp) :: normal
+      integer :: first, last
+
+      if (self%linear) then
+         normal = thickness_strain(self%material%poisson, strain)
+      else
+         call find_state(self, p, first, last)
+         normal = self%law%thickness_strain(strain, history(first:last))
+      end if
+   end function strain_across
+
+   !> Strain energy a volume.
+   pure function energy_density(self, p, strain, history, stress) result(energy)
+      class(solid_type), intent(in) :: self
+      integer, intent(in) :: p
+      real(wp), intent(in) :: strain(4), history(:), stress(4)
+      real(wp) :: energy
+      integer :: first, last
+
+      if (self%linear) then
+         energy = dot_product(strain, stress)/2.0_wp
+      else
+         call find_state(self, p, first, last)
+         energy = self%law%stored_energy(strain, history(first:last), stress)
+      end if
    end function energy_density
 
 end module solid

@@ -150,7 +150,7 @@ contains
       real(wp), parameter :: most_round_off = 1.0e-7_wp
       real(wp) :: psi(size(fixed)), motion, tolerance
       type(progress_type) :: before
-      logical :: small
+      logical :: small, unseen
 
       tolerance = scene%system%tolerance
       before = progress
@@ -161,12 +161,14 @@ contains
       progress%left = norm2(reduce(scene%system%structure%map, psi))
       progress%correction = norm2(delta)
       small = progress%correction <= tolerance*motion
+      unseen = .not. scene%system%static .and. progress%to_displacement*progress%correction &
+            <= epsilon(1.0_wp)*norm2(to%motion%d)
       small = small .or. (progress%correction >= 0.5_wp*before%correction .and. &
             progress%to_displacement*progress%correction <= tolerance*norm2(to%motion%d))
       converged = progress%left <= tolerance*progress%reference
       converged = converged .or. (progress%left <= most_round_off*progress%reference .and. &
             progress%left >= 0.5_wp*before%left)
-      converged = converged .and. small
+      converged = (converged .and. small) .or. unseen
       converged = converged .or. .not. (motion > 0.0_wp .or. progress%reference > 0.0_wp)
    end subroutine judge
 

@@ -1,4 +1,4 @@
-!> The fictitious force on overlapping rows (eqs. 3.18-3.24): the force that would pull them back by
+!> The fictitious force on overlapping rows: the force that would pull them back by
 !> alpha times their overlap, statically on the effective stiffness with all else free.
 module overlap_force
    use kinds, only: wp

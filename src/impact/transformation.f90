@@ -1,4 +1,4 @@
-!> The impact transformation (eqs. 4.1-4.29): a step with an impact at tau goes by Newmark to tau,
+!> The impact transformation: a step with an impact at tau goes by Newmark to tau,
 !> jumps in velocity, and goes on by Newmark, with a beta of its own; generalised to any number of
 !> rows as a loop over events with sustained contact, capture and release.
 module transformation

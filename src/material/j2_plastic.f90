@@ -3,7 +3,8 @@
 !> Components are 11 22 33 12 with engineering shear strain.
 module j2_plastic
    use kinds, only: wp
-   use elastic, only: plane_stress, elastic_matrix, thickness_strain
+   use elastic, only: plane_stress, elastic_matrix, elastic_thickness => thickness_strain
+   use point_law, only: point_law_type
    implicit none
    private
 
@@ -22,17 +23,21 @@ module j2_plastic
    !> The law. Isotropic: the table is the yield stress over equivalent plastic strain. Kinematic:
    !> the yield surface keeps the size of the table's first stress and its centre moves with the
    !> slope that the table has at the equivalent plastic strain.
-   type :: j2_type
+   type, extends(point_law_type) :: j2_type
       real(wp) :: shear = 0.0_wp
       real(wp) :: bulk = 0.0_wp
       real(wp) :: poisson = 0.0_wp
       real(wp) :: elastic(4, 4) = 0.0_wp
-      integer :: plane = 0
       logical :: kinematic = .false.
       real(wp), allocatable :: x(:)             !! equivalent plastic strain, increasing
       real(wp), allocatable :: y(:)             !! yield stress; constant beyond the ends
    contains
       procedure :: update
+      procedure :: stress_at
+      procedure :: thickness_strain
+      procedure :: stored_energy
+      procedure :: dissipated
+      procedure :: plastic_measure
    end type j2_type
 
 contains
@@ -44,6 +49,7 @@ contains
       logical, intent(in) :: kinematic
       real(wp), intent(in) :: x(:), y(:)
 
+      self%n_state = n_state
       self%poisson = elasticity(2)
       self%shear = elasticity(1)/(2.0_wp*(1.0_wp + elasticity(2)))
       self%bulk = elasticity(1)/(3.0_wp*(1.0_wp - 2.0_wp*elasticity(2)))
@@ -61,16 +67,16 @@ contains
    pure subroutine update(self, strain, state, stress, updated, tangent)
       class(j2_type), intent(in) :: self
       real(wp), intent(in) :: strain(4)
-      real(wp), intent(in) :: state(n_state)
+      real(wp), intent(in) :: state(self%n_state)
       real(wp), intent(out) :: stress(4)
-      real(wp), intent(out) :: updated(n_state)
+      real(wp), intent(out) :: updated(self%n_state)
       real(wp), intent(out), optional :: tangent(4, 4)
       real(wp) :: total(4), made(4), unused(4, 4)
       logical :: elastic
 
       if (self%plane == plane_stress) then
          total(1:2) = strain(1:2)
-         total(3) = state(3) + thickness_strain(self%poisson, strain - state(1:4))
+         total(3) = state(3) + elastic_thickness(self%poisson, strain - state(1:4))
          total(4) = strain(4)
          call try_elastic(self, total, state, stress, elastic)
          if (elastic) stress(3) = 0.0_wp
@@ -95,6 +101,52 @@ contains
             + dot_product(state(state_stress:) + stress, made)/2.0_wp
       updated(state_stress:) = stress
    end subroutine update
+
+   !> D : elastic strain.
+   pure function stress_at(self, strain, state) result(stress)
+      class(j2_type), intent(in) :: self
+      real(wp), intent(in) :: strain(4)
+      real(wp), intent(in) :: state(self%n_state)
+      real(wp) :: stress(4)
+
+      stress = matmul(self%elastic, strain - state(1:4))
+   end function stress_at
+
+   pure function thickness_strain(self, strain, state) result(number)
+      class(j2_type), intent(in) :: self
+      real(wp), intent(in) :: strain(4)
+      real(wp), intent(in) :: state(self%n_state)
+      real(wp) :: number
+
+      number = state(3) + elastic_thickness(self%poisson, strain - state(1:4))
+   end function thickness_strain
+
+   !> Half of stress : elastic strain.
+   pure function stored_energy(self, strain, state, stress) result(energy)
+      class(j2_type), intent(in) :: self
+      real(wp), intent(in) :: strain(4)
+      real(wp), intent(in) :: state(self%n_state)
+      real(wp), intent(in) :: stress(4)
+      real(wp) :: energy
+
+      energy = dot_product(stress, strain - state(1:4))/2.0_wp
+   end function stored_energy
+
+   pure function dissipated(self, state) result(energy)
+      class(j2_type), intent(in) :: self
+      real(wp), intent(in) :: state(self%n_state)
+      real(wp) :: energy
+
+      energy = state(state_work)
+   end function dissipated
+
+   pure function plastic_measure(self, state) result(peeq)
+      class(j2_type), intent(in) :: self
+      real(wp), intent(in) :: state(self%n_state)
+      real(wp) :: peeq
+
+      peeq = state(state_peeq)
+   end function plastic_measure
 
    !> The elastic stress at a strain, and whether it is within the yield surface. In scalars: most
    !> points of most steps need no more than this.

@@ -11,13 +11,14 @@ module check_json
    use memory_estimate, only: memory_type
    use scene_features, only: feature_list_type
    use scene_advice, only: advice_list_type
+   use explanation_lines, only: lines_type
    use notices, only: notice_list_type
    use run_report, only: procedure_name
    use json_report, only: put_model, put_notices, put_advice
    implicit none
    private
 
-   public :: step_facts_type, facts_of, describe_check
+   public :: step_facts_type, facts_of, describe_check, put_lines
 
    !> A step in force.
    type :: step_facts_type
@@ -82,6 +83,19 @@ contains
       call put_advice(report, [advice])
       call put_notices(report, notices)
    end subroutine describe_check
+
+   !> What `check --explain` prints.
+   subroutine put_lines(report, lines)
+      type(json_type), intent(inout) :: report
+      type(lines_type), intent(in) :: lines
+      integer :: i
+
+      call report%open_list('explanation')
+      do i = 1, lines%n
+         call report%put('', trim(lines%lines(i)))
+      end do
+      call report%close()
+   end subroutine put_lines
 
    subroutine put_step(report, simulation, i_step, facts)
       type(json_type), intent(inout) :: report

@@ -7,18 +7,18 @@ module command_line
    use errors, only: error_type, new_error, status_usage
    use memory_shortage, only: check_allocation
    use deck_reader, only: definition_type
+   use program_version, only: version_text
    implicit none
    private
 
-   public :: command_type, read_command, usage_text, version_text
-   public :: command_run, command_check, command_version, command_help
+   public :: command_type, read_command, usage_text
+   public :: command_run, command_check, command_version, command_help, command_reference
 
    integer, parameter :: command_run = 1
    integer, parameter :: command_check = 2
    integer, parameter :: command_version = 3
    integer, parameter :: command_help = 4
-
-   character(len=*), parameter :: version_text = '0.1.0'
+   integer, parameter :: command_reference = 5
 
    integer, parameter :: most_threads = 1024
 
@@ -26,11 +26,13 @@ module command_line
    type :: command_type
       integer :: kind = command_help
       character(len=:), allocatable :: deck
+      character(len=:), allocatable :: topic           !! card to print the reference of, or blank
       character(len=:), allocatable :: output          !! result file
       type(definition_type), allocatable :: definitions(:)
       integer :: threads = 0                           !! 0: OMP_NUM_THREADS, else 1
       logical :: quiet = .false.
       logical :: json = .false.                        !! for machines; quiet but for that
+      logical :: explain = .false.                     !! a check: say what the deck means
       logical :: overwrite = .false.                   !! results that exist may be replaced
       character(len=:), allocatable :: restart         !! results of an earlier run to go on from
       real(wp) :: memory = 0.0_wp                      !! bytes the run may take, 0: the machine's
@@ -44,16 +46,22 @@ contains
       character(len=:), allocatable :: text
       character(len=1), parameter :: nl = new_line('a')
 
-      text = 'carom '//version_text//': structural dynamics with impact'//nl//nl// &
+      text = 'carom '//version_text()//': structural dynamics with impact'//nl//nl// &
             'usage: carom run DECK [-o OUT.h5] [--define NAME=VALUE]... [--threads N] [--quiet]' &
             //nl// &
             '                      [--overwrite] [--restart OLD.h5] [--memory SIZE]'//nl// &
             '                      [--time-limit TIME] [--json]'//nl// &
-            '       carom check DECK [--define NAME=VALUE]... [--memory SIZE] [--json]'//nl// &
+            '       carom check DECK [--explain] [--define NAME=VALUE]... [--memory SIZE]' &
+            //nl// &
+            '                      [--json]'//nl// &
+            '       carom help [CARD]'//nl// &
             '       carom --version | --help'//nl//nl// &
             '  run      computes the deck; writes OUT.h5, OUT.log and OUT.sta'//nl// &
             '           (default: beside the deck, with its name)'//nl// &
             '  check    reads the deck, builds the model and prints what a run would do'//nl// &
+            '  --explain  prints what the deck means: periods, waves, contact, a step' &
+            //nl// &
+            '  help     prints the deck reference of a card; without one the list of cards'//nl// &
             '  --define overrides a *PARAMETER of the deck'//nl// &
             '  --threads threads to work with (default: OMP_NUM_THREADS, else 1)'//nl// &
             '  --quiet  no progress on the terminal'//nl// &
@@ -84,6 +92,10 @@ contains
          command%kind = command_run
       case ('check')
          command%kind = command_check
+      case ('help')
+         command%kind = command_reference
+         call read_topic(command)
+         return
       case ('--version')
          command%kind = command_version
       case ('--help', '-h')
@@ -101,6 +113,18 @@ contains
       end do
       call complete(command, error)
    end subroutine read_command
+
+   !> All words behind `help`: a card's name may have two.
+   subroutine read_topic(command)
+      type(command_type), intent(inout) :: command
+      integer :: i
+
+      command%topic = ''
+      do i = 2, command_argument_count()
+         command%topic = command%topic//' '//argument(i)
+      end do
+      command%topic = trim(adjustl(command%topic))
+   end subroutine read_topic
 
    subroutine read_word(command, word, i, error)
       type(command_type), intent(inout) :: command
@@ -122,6 +146,8 @@ contains
          command%json = .true.
       case ('--overwrite')
          command%overwrite = .true.
+      case ('--explain')
+         command%explain = .true.
       case default
          if (word(1:min(1, len(word))) == '-' .or. len(word) == 0) then
             call usage_error(error, 'unknown option '''//word//'''')
@@ -233,6 +259,8 @@ contains
       end if
       if (command%kind == command_check .and. allocated(command%restart)) then
          call usage_error(error, '--restart goes with run: a check starts nothing')
+      else if (command%kind == command_run .and. command%explain) then
+         call usage_error(error, '--explain goes with check')
       else if (allocated(command%output)) then
          call check_ending(command%output, error)
          return

@@ -19,7 +19,12 @@ module deck_check
    use run_report, only: report_model, report_step, report_notes
    use run_log, only: log_type, say, remark
    use json_text, only: json_type
-   use check_json, only: step_facts_type, facts_of, describe_check
+   use check_json, only: step_facts_type, facts_of, describe_check, put_lines
+   use deck_doubts, only: doubt_deck
+   use step_doubts, only: doubt_step, may_be_too_long
+   use longest_period, only: find_longest_period
+   use explanation, only: explain_start
+   use explanation_lines, only: lines_type
    implicit none
    private
 
@@ -27,6 +32,10 @@ module deck_check
 
    !> Elements up to which a run, and a check, look at each for advice.
    integer, parameter :: most_elements(2) = [5000, 200000]
+
+   !> Seconds that the longest period may take to find in a check; in a run, and as a part of it.
+   real(wp), parameter :: patience = 0.3_wp, least_patience = 5.0e-4_wp, share = 0.01_wp
+   real(wp), parameter :: long_patience = 5.0_wp   !! of an explanation
 
    !> What is known of a run before it begins.
    type :: preview_type
@@ -36,6 +45,7 @@ module deck_check
       type(advice_list_type) :: advice
       logical, allocatable :: may_meet(:)        !! by contact pairs
       type(step_facts_type), allocatable :: steps(:)
+      type(lines_type) :: explanation
    end type preview_type
 
 contains
@@ -49,19 +59,22 @@ contains
       type(preview_type) :: preview
       type(log_type) :: log
 
-      log%terminal = .not. command%json
       call read_model(simulation%model, command, preview, error)
       if (allocated(error)) return
+      preview%explanation%wanted = command%explain
+      log%terminal = .not. (command%explain .or. command%json)
       call prepare(simulation, log, .true., preview, error)
       if (allocated(error)) return
+      if (command%explain .and. .not. command%json) call report_explanation(preview, simulation)
       call say(log, 'memory: '//memory_text(preview%memory))
       call report_limit(preview, simulation, log, error)
       if (allocated(error)) return
       call report_preview(preview, simulation, .true., log)
       call report_notes(simulation, log)
-      call say(log, 'the deck is sound')
+      call say(log, 'the deck is sound; --explain says what it means')
       if (command%json) call describe_check(report, simulation, preview%steps, preview%memory, &
             preview%limit%bytes, preview%features, preview%advice, log%notices)
+      if (command%json .and. command%explain) call put_lines(report, preview%explanation)
       call simulation%scene%system%matrices%release()
    end subroutine check_deck
 
@@ -99,6 +112,22 @@ contains
       end if
    end subroutine report_limit
 
+   !> The explanation, and what is doubtful in the deck.
+   subroutine report_explanation(preview, simulation)
+      type(preview_type), intent(in) :: preview
+      type(simulation_type), intent(in) :: simulation
+      type(log_type) :: log
+      integer :: i
+
+      do i = 1, preview%explanation%n
+         call say(log, trim(preview%explanation%lines(i)))
+      end do
+      do i = 1, size(simulation%remarks)
+         if (index(simulation%remarks(i)%text, 'warning: ') > 0) call say(log, &
+               simulation%remarks(i)%text)
+      end do
+   end subroutine report_explanation
+
    !> Builds the scene and goes through all steps without time passing, for their errors.
    subroutine prepare(simulation, log, aloud, preview, error)
       type(simulation_type), intent(inout) :: simulation
@@ -112,6 +141,7 @@ contains
       if (allocated(error)) return
       call build_scene(simulation, error)
       if (allocated(error)) return
+      call doubt_deck(simulation)
       allocate (preview%may_meet(size(simulation%contact%names)), source=.false., stat=status)
       call check_allocation(status)
       if (aloud) call report_model(simulation, log)
@@ -152,7 +182,7 @@ contains
 
    !> Memory, features and advice of a step in force.
    subroutine look_ahead(simulation, i_step, aloud, plan, preview)
-      type(simulation_type), intent(in) :: simulation
+      type(simulation_type), intent(inout) :: simulation
       integer, intent(in) :: i_step
       logical, intent(in) :: aloud               !! this is a check
       type(plan_type), intent(in) :: plan
@@ -165,9 +195,32 @@ contains
       call advise_step(preview%advice, simulation, i_step, features, &
             simulation%model%elements%n <= most_elements(merge(2, 1, aloud)))
       call advise_pairs(simulation, preview%may_meet)
+      call judge_step(simulation, i_step, merge(patience, max(least_patience, &
+            share*features%total()), aloud), preview)
       if (i_step > 1 .and. features%total() <= preview%features%total()) return
       preview%features = features
    end subroutine look_ahead
+
+   !> What the longest period says of a step in force.
+   subroutine judge_step(simulation, i_step, seconds, preview)
+      type(simulation_type), intent(inout) :: simulation
+      integer, intent(in) :: i_step
+      real(wp), intent(in) :: seconds            !! that finding it may take
+      type(preview_type), intent(inout) :: preview
+      real(wp) :: period
+      logical :: costly
+
+      period = 0.0_wp
+      costly = .true.
+      if (preview%explanation%wanted) then
+         call find_longest_period(simulation, long_patience, period, costly)
+      else if (may_be_too_long(simulation, i_step)) then
+         call find_longest_period(simulation, seconds, period, costly)
+      end if
+      call doubt_step(simulation, i_step, period)
+      if (preview%explanation%wanted) call explain_start(preview%explanation, simulation, i_step, &
+            period, costly)
+   end subroutine judge_step
 
    !> Pairs that cannot meet in any step.
    subroutine name_idle_pairs(simulation, preview)

@@ -9,7 +9,7 @@ module frequency_run
    use effective_matrix, only: mark_implicit
    use result_file, only: result_file_type, write_system
    use mode_recorder, only: record_modes
-   use command_line, only: version_text
+   use program_version, only: version_text
    use run_log, only: log_type, say, remark
    use scene_setup, only: simulation_type, begin_step
    use run_report, only: report_step
@@ -38,7 +38,7 @@ contains
             state => simulation%motion%motion)
          if (i_step == 1) then
             call mark_implicit(system%structure, implicit_equation)
-            call write_system(results, simulation%scene, version_text, implicit_equation, error)
+            call write_system(results, simulation%scene, version_text(), implicit_equation, error)
             if (allocated(error)) return
          end if
          call enter(system%cost, phase_factor, outer)

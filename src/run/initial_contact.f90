@@ -3,15 +3,16 @@ module initial_contact
    use kinds, only: wp
    use errors, only: error_type
    use text, only: to_text, plural
-   use places, only: note_at
+   use places, only: note_at, fail_at
    use model, only: model_type
    use element_sides, only: count_sides, side_nodes
    use contact_pairs, only: contact_pair_list_type, find_contact_rows
    use contact_geometry, only: new_contact_geometry, allow_gaps
    use motion_state, only: state_type
    use constraint_rows, only: row_gaps
-   use row_placement, only: new_rows, place_rows
+   use row_placement, only: new_rows, place_rows, nodal_displacements
    use impact_scene, only: scene_type
+   use wall_side, only: lies_behind, wall_cure
    implicit none
    private
 
@@ -65,6 +66,8 @@ contains
       logical :: moved
 
       adjustments = [(adjustment_type(pair=i), i=1, size(model%pairs))]
+      call check_walls(model, nodal_displacements(scene%system%structure%map, start%d), error)
+      if (allocated(error)) return
       x = model%nodes%x
       owner = 0
       do round = 1, max_rounds
@@ -84,6 +87,24 @@ contains
       call allow_remaining(model, list, scene, start, adjustments, error)
       adjustments = pack(adjustments, model%pairs%adjust)
    end subroutine adjust_pairs
+
+   !> ADJUST would put a body that lies wholly behind a rigid surface flat on it: an error.
+   subroutine check_walls(model, u, error)
+      type(model_type), intent(in) :: model
+      real(wp), intent(in) :: u(:, :)            !! (3, n_nodes) displacements at the start
+      type(error_type), allocatable, intent(out) :: error
+      integer :: p
+
+      do p = 1, size(model%pairs)
+         if (.not. model%pairs(p)%adjust .or. model%pairs(p)%rigid_target == 0) cycle
+         if (.not. lies_behind(model, p, model%nodes%x(:, :model%nodes%n) + u)) cycle
+         call fail_at(error, model%source, model%pairs(p)%place, 'ADJUST: ' &
+               //trim(model%surfaces(model%pairs(p)%contactor)%name)//' is on the wrong side of ' &
+               //trim(model%rigid_surfaces(model%pairs(p)%rigid_target)%name), &
+               wall_cure(model, p))
+         return
+      end do
+   end subroutine check_walls
 
    !> One round: every slave node onto the partners that it has now.
    subroutine move_nodes(model, list, scene, start, owner, moved)

@@ -12,6 +12,7 @@ module initial_overlap
    use row_placement, only: nodal_displacements
    use deep_overlap, only: find_deep_nodes
    use impact_scene, only: scene_type, merge_gap_tolerance
+   use wall_side, only: lies_behind, wall_cure
    use initial_contact, only: gaps_at_start, start_size, closed_tolerance
    implicit none
    private
@@ -51,7 +52,8 @@ contains
          if (.not. present(cure)) call check_depths(model, list, scene, start, error)
          return
       end if
-      advice = overlap_cure(model, list%rows(worst)%model_pair)
+      advice = overlap_cure(model, list%rows(worst)%model_pair, model%nodes%x(:, &
+            :model%nodes%n) + nodal_displacements(scene%system%structure%map, start%d))
       if (present(cure)) advice = cure
       call fail_at(error, model%source, list%rows(worst)%place, &
             overlap_text(list, scene, &
@@ -124,13 +126,19 @@ contains
       end do
    end function overlap_text
 
-   function overlap_cure(model, pair) result(cure)
+   function overlap_cure(model, pair, x) result(cure)
       type(model_type), intent(in) :: model
       integer, intent(in) :: pair                !! index of the model's pair, 0: a gap element
+      real(wp), intent(in) :: x(:, :)            !! (3, n_nodes) at the start
       character(len=:), allocatable :: cure
+      logical :: behind
 
+      behind = .false.
+      if (pair > 0) behind = lies_behind(model, pair, x)
       if (pair == 0) then
          cure = 'give the gap a larger clearance, or an initial displacement without overlap'
+      else if (behind) then
+         cure = wall_cure(model, pair)
       else if (model%pairs(pair)%adjust) then
          cure = 'ADJUST could not put them where they overlap nothing: look at the surfaces there'
       else if (model%pairs(pair)%target == model%pairs(pair)%contactor) then

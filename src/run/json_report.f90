@@ -7,7 +7,8 @@ module json_report
    use model, only: model_type
    use notices, only: notice_list_type
    use scene_advice, only: advice_list_type
-   use command_line, only: command_type, version_text, command_check
+   use command_line, only: command_type, command_check
+   use program_version, only: version_text
    implicit none
    private
 
@@ -25,7 +26,7 @@ contains
 
       call report%open_object('')
       call report%put('program', 'carom')
-      call report%put('version', version_text)
+      call report%put('version', version_text())
       call report%put('command', trim(merge('check', 'run  ', command%kind == command_check)))
       call put_optional(report, 'deck', command%deck)
       call report%open_object('definitions')

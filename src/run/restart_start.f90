@@ -17,7 +17,8 @@ module restart_start
    use restart_deck, only: read_restart_deck, definition_length
    use result_file, only: open_results, record_increment, write_system
    use result_extents, only: extents_type, resume_results
-   use command_line, only: command_type, version_text
+   use command_line, only: command_type
+   use program_version, only: version_text
    use output_files, only: claim_output, log_stem
    use run_log, only: open_log, continue_log, say
    use run_output, only: output_type
@@ -272,7 +273,7 @@ contains
       if (self%resumed) return
       call say(output%log, '  its records were others: the first row here is that state')
       call mark_implicit(simulation%scene%system%structure, implicit_equation)
-      call write_system(output%results, simulation%scene, version_text, implicit_equation, error)
+      call write_system(output%results, simulation%scene, version_text(), implicit_equation, error)
       if (.not. allocated(error)) call record_increment(output%results, simulation%scene, &
             simulation%contact, simulation%motion, simulation%model%steps(course%step)%requests, &
             0, .false., error)

@@ -16,8 +16,8 @@ module run_report
    use automatic_groups, only: partition_type
    use increment_count, only: count_increments
    use scene_setup, only: simulation_type
+   use program_version, only: version_text
    use run_log, only: log_type, say, remark
-   use command_line, only: version_text
    implicit none
    private
 
@@ -30,7 +30,7 @@ contains
       type(simulation_type), intent(in) :: simulation
       type(log_type), intent(in) :: log
 
-      call say(log, 'carom '//version_text)
+      call say(log, 'carom '//version_text())
       if (len_trim(simulation%model%heading) > 0) call say(log, trim(simulation%model%heading))
       call report_files(simulation%model%source, log)
       call say(log, 'model: '//plural(simulation%model%nodes%n, 'node')//', ' &

@@ -5,7 +5,7 @@ module time_loop
    use cost_account, only: enter, leave, end_increments, phase_build, phase_output
    use effective_matrix, only: mark_implicit
    use result_file, only: record_increment, write_system
-   use command_line, only: version_text
+   use program_version, only: version_text
    use scene_setup, only: simulation_type
    use step_start, only: start_step
    use stop_request, only: start_looking
@@ -80,7 +80,7 @@ contains
 
       call enter(simulation%scene%system%cost, phase_output, outer, .true.)
       call mark_implicit(simulation%scene%system%structure, implicit_equation)
-      call write_system(output%results, simulation%scene, version_text, implicit_equation, error)
+      call write_system(output%results, simulation%scene, version_text(), implicit_equation, error)
       call leave(simulation%scene%system%cost, outer)
       if (allocated(error)) return
       call check_finite(simulation%motion%motion, simulation%scene%ledger, 0.0_wp, error)

@@ -45,6 +45,8 @@ def command_lines(folder):
     deck = str(INPUT / 'sdof' / 'sdof.inp')
     yield 'help', ['--help'], 0
     yield 'version', ['--version'], 0
+    yield 'help on a card', ['help', '*CONTACT PAIR'], 0
+    yield 'help on nothing', ['help', 'kontact pear'], 1
     yield 'unknown option', ['run', deck, '--fast'], 1
     yield 'no deck', ['run', str(folder / 'none.inp')], 3
     for path in (deck, str(folder / 'sparse_solver.inp')):

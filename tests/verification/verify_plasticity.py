@@ -147,9 +147,22 @@ def check_rest(checks, kind):
                    f'{kind}: kinetic energy at rest')
 
 
+def check_flight(checks, kind):
+    """A plastic body flies freely: no force but round-off, found at once, and its speed stays."""
+    mesh = Mesh(2, 1, 4)
+    flight = '*NSET, NSET=BODY\n' + ''.join(f'{p + 1}\n' for p in range(len(mesh.x)))
+    flight += '*INITIAL CONDITIONS, TYPE=VELOCITY\nBODY, 1, -10\n'
+    text = (mesh.text(kind) + material(E, NU, 7.8e-9, more=PLASTIC.format('KINEMATIC')) + flight
+            + step('DYNAMIC, DIRECT', '1e-6, 3e-4', '', '*NODE PRINT\nV\n*ENERGY PRINT\n'))
+    run = run_deck(text)
+    checks.close(run['history/node_1/V1'], np.full(301, -10.0), 1e-10, f'{kind}: speed in flight')
+    checks.at_most(np.max(run['cost/iterations']), 3 * 300, f'{kind}: iterations in flight')
+
+
 checks = Checks()
 for kind in ('CPE4', 'CPE4R'):
     check_rest(checks, kind)
+    check_flight(checks, kind)
 for kind in ('CPS4', 'CAX4', 'CPS8', 'CPS3', 'CPS4R', 'CAX8R'):
     for law in ('ISOTROPIC', 'KINEMATIC'):
         check_uniaxial(checks, kind, law)

@@ -19,7 +19,7 @@ import numpy as np
 from carom_case import INPUT, ROOT, Checks, scratch_folder
 import tradeoff as script
 from carom_deck import Deck, run_deck
-from carom_results import ScriptError
+from carom_script import ScriptError
 from exact_solutions import masses_in_line, oscillator
 
 CAROM = Path(sys.argv[1]).resolve()

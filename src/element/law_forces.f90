@@ -1,26 +1,26 @@
-!> Forces of one elastic-plastic solid, with the energy that it holds and the work it has taken:
+!> Forces of one solid whose material has a law, with the energy that it holds and what it has lost:
 !> what an explicit step asks of every element, without a tangent.
-module plastic_forces
+module law_forces
    use kinds, only: wp
-   use j2_plastic, only: j2_type, n_state, state_work
+   use point_law, only: point_law_type
    use solid_kinematics, only: kinematics_type
    implicit none
    private
 
-   public :: find_plastic_forces, add_hourglass_forces
+   public :: find_law_forces, add_hourglass_forces
 
 contains
 
    !> Forces of an element at displacements u, and its state there from the last accepted one.
-   pure subroutine find_plastic_forces(law, kinematics, shape, u, state, updated, force, energy)
-      type(j2_type), intent(in) :: law
+   pure subroutine find_law_forces(law, kinematics, shape, u, state, updated, force, energy)
+      class(point_law_type), intent(in) :: law
       type(kinematics_type), intent(in) :: kinematics
       integer, intent(in) :: shape                 !! of the element, in `kinematics`
       real(wp), intent(in), contiguous :: u(:, :)  !! (2, nodes)
-      real(wp), intent(in) :: state(n_state, size(kinematics%volume, 1))
-      real(wp), intent(out) :: updated(n_state, size(kinematics%volume, 1))
+      real(wp), intent(in) :: state(law%n_state, size(kinematics%volume, 1))
+      real(wp), intent(out) :: updated(law%n_state, size(kinematics%volume, 1))
       real(wp), intent(out), contiguous :: force(:, :)   !! (2, nodes)
-      real(wp), intent(inout) :: energy(2)         !! strain energy and plastic work are added
+      real(wp), intent(inout) :: energy(2)         !! energies stored and lost are added
       real(wp) :: strain(4), stress(4), mean, dilatation
       integer :: p
 
@@ -34,8 +34,8 @@ contains
             if (kinematics%b_bar) strain(1:3) = strain(1:3) &
                   + (dilatation - (strain(1) + strain(2) + strain(3)))/3.0_wp
             call law%update(strain, state(:, p), stress, updated(:, p))
-            energy(1) = energy(1) + v*dot_product(stress, strain - updated(1:4, p))/2.0_wp
-            energy(2) = energy(2) + v*updated(state_work, p)
+            energy(1) = energy(1) + v*law%stored_energy(strain, updated(:, p), stress)
+            energy(2) = energy(2) + v*law%dissipated(updated(:, p))
             stress = v*stress
             if (kinematics%b_bar) then
                mean = mean + (stress(1) + stress(2) + stress(3))/3.0_wp
@@ -45,7 +45,7 @@ contains
          end associate
       end do
       if (kinematics%b_bar) force = force + mean*kinematics%dilatation(:, :, shape)
-   end subroutine find_plastic_forces
+   end subroutine find_law_forces
 
    pure function strain_of(n, g, u) result(strain)
       integer, intent(in) :: n
@@ -91,4 +91,4 @@ contains
       energy = energy + stiffness*sum(amount**2)/2.0_wp
    end subroutine add_hourglass_forces
 
-end module plastic_forces
+end module law_forces

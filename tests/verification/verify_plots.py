@@ -1,0 +1,210 @@
+"""The scripts that draw: each makes a picture of the expected size that is not blank, with the deck's
+heading; --save takes png, pdf and svg, --show opens a window or says why not; a history of eight
+million rows is drawn in a few seconds and with memory well below the size of its file."""
+import contextlib
+import importlib
+import io
+import os
+import subprocess
+import sys
+
+import h5py
+import numpy as np
+from carom_case import INPUT, ROOT, Checks, run_deck, scratch_folder
+from result_decks import BARE, STRIP
+
+for name in ('MPLBACKEND', 'DISPLAY', 'WAYLAND_DISPLAY'):
+    os.environ.pop(name, None)
+from carom_plots import BINS_OF_TICKS, COLOURS, event_times, plt   # noqa: E402  (scripts)
+
+CHECKS = Checks()
+FOLDER = scratch_folder()
+ROWS = 8_000_000
+MEASURE = """import importlib, sys, time
+folder, result, pictures, *scripts = sys.argv[1:]
+sys.path.insert(0, folder)
+for script in scripts:
+    begun = time.process_time()
+    sys.argv = [script, result, '--save', f'{pictures}/{script}.png']
+    importlib.import_module(script).main()
+    lines = open('/proc/self/status').read().splitlines()
+    memory = next(int(line.split()[1]) for line in lines if line.startswith('VmHWM'))
+    print('used', time.process_time() - begun, memory / 1024)
+"""
+WINDOW = """from matplotlib.backends.backend_agg import FigureCanvasAgg as FigureCanvas
+def show(*, block=None):
+    print('a window opens')
+"""
+
+
+def call(script, *words):
+    """Runs a script's main() here: what it prints, and the message it ends with."""
+    module, kept, said = importlib.import_module(script), sys.argv, io.StringIO()
+    sys.argv = [script + '.py', *map(str, words)]
+    plt.close('all')
+    try:
+        with contextlib.redirect_stdout(said):
+            module.run(module.main)
+    except SystemExit as end:
+        return said.getvalue(), str(end)
+    finally:
+        sys.argv = kept
+    return said.getvalue(), ''
+
+
+def start(script, *words):
+    """Runs a script as a process of its own: status and output."""
+    done = subprocess.run([sys.executable, '-B', ROOT / 'scripts' / f'{script}.py', *words], text=True,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    return done.returncode, done.stdout
+
+
+def measure(path, *scripts):
+    """Draws a result by some scripts in one new process: seconds of the processor and peak memory in MB
+    after each of them."""
+    (FOLDER / 'measure.py').write_text(MEASURE)
+    words = [sys.executable, '-B', FOLDER / 'measure.py', ROOT / 'scripts', path, FOLDER, *scripts]
+    done = subprocess.run(words, capture_output=True, text=True)
+    CHECKS.true(done.returncode == 0, f'{scripts} of {path.name}: {done.stderr or "drawn"}')
+    return [tuple(map(float, line.split()[1:])) for line in done.stdout.splitlines()
+            if line.startswith('used ')]
+
+
+def look(path, name, width=None):
+    """A picture: its size, something on it, and nothing cut off at its rim."""
+    pixels = plt.imread(path)[..., :3]
+    pixels = pixels / 255.0 if pixels.dtype == np.uint8 else pixels
+    CHECKS.true(0.003 < pixels.std(axis=2).mean() + pixels.std() and pixels.std() > 0.05,
+                f'{name} is not blank')
+    CHECKS.true(400 <= pixels.shape[0] <= 2600 and 500 <= pixels.shape[1] <= 1500
+                and width in (None, pixels.shape[1]), f'{name} has {pixels.shape[:2]} pixels')
+    rim = np.concatenate([pixels[0], pixels[-1], pixels[:, 0], pixels[:, -1]])
+    CHECKS.true((rim > 0.99).mean() > 0.99, f'{name}: nothing is cut off at its rim')
+
+
+def draw_all(sdof, strip):
+    """Every script on a small case."""
+    two_dof = run_deck(INPUT / 'two_dof' / 'two_dof.inp', end=4).path
+    cases = [
+        ('plot_history', [sdof, '--events', '--columns', 'node_1/U1,node_1/V1'], 1235),
+        ('plot_history', [strip], 1235),
+        ('plot_energy', [sdof], 1235),
+        ('plot_energy', [strip, '--lines', '--events'], 1235),
+        ('plot_phase', [sdof, '--wall', '-0.5'], 975),
+        ('plot_profile', [strip], 975),
+        ('plot_mesh', [strip, '--field', 'S11', '--groups'][:3], None),
+        ('plot_mesh', [strip, '--groups', '--supports'], None),
+        ('compare_exact', ['two_dof', two_dof], 1235),
+        ('plot_contact', [strip], 1105),
+    ]
+    for number, (script, words, width) in enumerate(cases):
+        path = FOLDER / f'{number}.png'
+        said, error = call(script, *words, '--save', path)
+        CHECKS.true(not error and said.endswith(f'{path}\n'), f'{script} {words[-1]}: {error or "drawn"}')
+        look(path, f'{script} {number}', width)
+    said, error = call('animate', strip, '--field', 'MISES', '-o', FOLDER / 'film.gif')
+    CHECKS.true(not error and '11 frames' in said, f'animate: {error or said}')
+    look(FOLDER / 'film.gif', 'animate', None)
+
+
+def options(sdof):
+    """--save in other formats, beside the result, wrong names; --show with and without a window."""
+    for ending, head in (('pdf', b'%PDF'), ('svg', b'<?xml')):
+        path = FOLDER / f'picture.{ending}'
+        call('plot_history', sdof, '--save', path)
+        CHECKS.true(path.read_bytes().startswith(head), f'--save of a .{ending}')
+    CHECKS.true('One mass on a spring that hits a wall' in call_title(sdof), 'the heading is the title')
+    call('plot_energy', sdof)
+    CHECKS.true(sdof.with_name('result_energy.png').exists(), 'without --save beside the result')
+    CHECKS.true('.png, .pdf or .svg' in call('plot_energy', sdof, '-o', 'x.bmp')[1], 'wrong ending')
+    CHECKS.true('cannot write' in call('plot_energy', sdof, '-o', '/no/x.png')[1], 'no such folder')
+    CHECKS.true('DISPLAY' in call('plot_history', sdof, '--show')[1], '--show without a display')
+    (FOLDER / 'window.py').write_text(WINDOW)
+    sys.path.append(str(FOLDER))
+    os.environ['MPLBACKEND'] = 'module://window'
+    said, error = call('plot_history', sdof, '--show')
+    CHECKS.true(not error and said == 'a window opens\n', f'--show: {said} {error}')
+    said, error = call('plot_history', sdof, '--show', '--save', FOLDER / 'both.png')
+    CHECKS.true(said == f'{FOLDER}/both.png\na window opens\n', '--show and --save')
+    del os.environ['MPLBACKEND']
+    plt.switch_backend('Agg')
+    status, said = start('plot_history', 'none.h5')
+    CHECKS.true(status == 1 and said == "error: no result file 'none.h5'\n", f'status {status}: {said}')
+    bare = run_deck(BARE).path
+    for script, card in (('plot_energy', '*ENERGY PRINT'), ('plot_phase', '*NODE PRINT')):
+        error = call(script, bare)[1]
+        CHECKS.true(card in error, f'{script}: {error}')
+    CHECKS.true(len(set(COLOURS)) == len(COLOURS) == 7, 'seven colours')
+
+
+def call_title(path):
+    """The title of the history's figure."""
+    module = importlib.import_module('plot_history')
+    with module.Result(path) as result:
+        return module.draw(result, ['node_1/U1'], False).get_suptitle()
+
+
+def large_file():
+    """Histories and energies of so many rows; columns that are the same share their place."""
+    path = FOLDER / 'large.h5'
+    with h5py.File(path, 'w') as file:
+        for name in ('history/time', 'history/node_1/U1', 'history/node_1/V1'):
+            file.create_dataset(name, (ROWS,), float, chunks=(512,))
+        file.create_dataset('zero', (ROWS,), float, chunks=(512,))
+        for begin in range(0, ROWS, 500_000):
+            t = 1e-6 * np.arange(begin, begin + 500_000)
+            rows = slice(begin, begin + 500_000)
+            file['history/time'][rows] = t
+            file['history/node_1/U1'][rows] = 1.5 + np.sin(3000.0 * t) * np.exp(-t)
+            file['history/node_1/V1'][rows] = 1.5 + np.cos(3000.0 * t) * np.exp(-t)
+        file['history/node_1/U1'][ROWS - 321_098] = 4.0     # one row stands out
+        for name, of in (('time', 'time'), ('kinetic', 'node_1/U1'), ('strain', 'node_1/V1'),
+                         ('total', 'node_1/U1')):
+            file[f'energy/{name}'] = file[f'history/{of}']
+        for name in ('external_work', 'balance_error'):
+            file[f'energy/{name}'] = file['zero']
+    return path
+
+
+def streams(small):
+    """Time and memory of large histories, beside those of a small one."""
+    path = large_file()
+    size = path.stat().st_size / 2**20
+    CHECKS.at_least(size, 100.0, 'MB of the large file')
+    scripts = 'plot_history', 'plot_energy', 'plot_phase'
+    (_, least), *_ = measure(small, scripts[0])
+    found = measure(path, *scripts[:2]) + measure(path, scripts[2])
+    for script, (seconds, most) in zip(scripts, found):
+        CHECKS.at_most(most - least, 0.4 * size, f'{script}: MB more than for a small file')
+        CHECKS.at_most(seconds, 10.0, f'{script} of {ROWS} rows: seconds of the processor')
+        look(FOLDER / f'{script}.png', f'{script} of {ROWS} rows')
+    module = importlib.import_module('plot_history')
+    with module.Result(path) as result:
+        figure = module.draw(result, ['node_1/U1'], False)
+        drawn = figure.axes[0].lines[0].get_xydata()
+        CHECKS.at_most(len(drawn), 8000, 'points of the path')
+        CHECKS.true(drawn[:, 1].max() == 4.0, 'the row that stands out is drawn')
+    events = {'time': np.linspace(0, 1, 100_000), 'kind': np.full(100_000, 'impact')}
+    count, times = event_times(Rows(events), 0.0, 1.0)['impact']
+    CHECKS.true(count == 100_000 and len(times) <= BINS_OF_TICKS + 1, 'many events are few ticks')
+
+
+class Rows(dict):
+    """Columns with a length of rows."""
+
+    def __len__(self):
+        return len(self['time'])
+
+
+def main():
+    sdof = run_deck(INPUT / 'sdof' / 'sdof.inp').path
+    strip = run_deck(STRIP.replace('*CONTACT PRINT', '*CONTACT FILE, FREQUENCY=10\nCF\n*CONTACT PRINT')
+                     ).path
+    draw_all(sdof, strip)
+    options(sdof)
+    streams(sdof)
+    CHECKS.finish()
+
+
+if __name__ == '__main__':
+    main()
