@@ -52,7 +52,7 @@ CASES = {
     "cantilever": Case(bodies.draw_cantilever, "cantilever", "modes"),
     "thick_cylinder": Case(bodies.draw_thick_cylinder, "elastic_cax8", "plastic_cax4"),
     "from_gmsh": Case(frames.draw_from_gmsh, "ring"),
-    "from_freecad": Case(frames.draw_from_freecad, "FEMMeshGmsh", "impact"),
+    "from_freecad": Case(frames.draw_from_freecad, "export/FEMMeshGmsh", "impact"),
     "hertz": Case(bodies.draw_hertz, "nonmatching", "nonmatching_nodes"),
     "block": Case(frames.draw_block, "block", edit=at_anchored_events),
     "dropped_disc": Case(frames.draw_dropped_disc, "q4", "q4_fictitious"),
@@ -76,7 +76,7 @@ def is_fresh(result, carom, name):
 def compute(carom, name, deck, results):
     """Runs a deck of a case, unless its result is there; the path of the result."""
     path = INPUT / name / f"{deck}.inp"
-    result = results / f"{name}.{deck}.h5"
+    result = results / f"{name}.{deck.replace('/', '_')}.h5"
     if is_fresh(result, carom, name):
         return result
     if CASES[name].edit:

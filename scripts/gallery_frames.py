@@ -108,7 +108,7 @@ def draw_from_gmsh(runs):
 def draw_from_freecad(runs):
     """The arch at rest under its load, and thrown on a plane."""
     made, left, right = halves("A steel arch, loaded and dropped (mesh of FreeCAD)", 1.0)
-    rest, blow = runs["FEMMeshGmsh"], runs["impact"]
+    rest, blow = runs["export/FEMMeshGmsh"], runs["impact"]
     axes = left.subplots(2, 1)
     for axis, run, frame, scale, words in (
             (axes[0], rest, -1, 200, "1000 N on the crown"),

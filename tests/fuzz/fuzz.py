@@ -1,6 +1,6 @@
 """Mutants of all decks of input/ and of random small scenes: the program must end as it says it does.
 
-    python3 fuzz.py CAROM [--count N] [--seed S] [--jobs J] [--keep FOLDER] [--only I]
+    python3 fuzz.py CAROM [--first I] [--count N] [--seed S] [--jobs J] [--keep FOLDER] [--only I]
 
 Mutant I of seed S is always the same. Each must end with status 0, 2, 3 or 4 within bounds of time
 and memory (or with 5 in time, where it was asked to stop after 10 s), without a signal or an error of the language or a sanitizer, with a message that names a
@@ -172,6 +172,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("carom", type=lambda name: Path(name).resolve())
     parser.add_argument("--count", type=int, default=2000, help="number of mutants")
+    parser.add_argument("--first", type=int, default=0, help="number of the first mutant")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--keep", help="folder for the mutants that fail or run long")
@@ -179,7 +180,8 @@ def main():
     options = parser.parse_args()
     limit_files()
     campaign = Campaign(options)
-    campaign.run(range(options.count) if options.only is None else [options.only])
+    numbers = range(options.first, options.first + options.count)
+    campaign.run(numbers if options.only is None else [options.only])
     sys.exit(1 if campaign.failures else 0)
 
 
