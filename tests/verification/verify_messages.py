@@ -6,6 +6,7 @@ import json
 import os
 import pty
 import re
+import resource
 import signal
 import subprocess
 import sys
@@ -329,8 +330,26 @@ def check_json(checks):
                 'an error in mid-run: what has been done so far')
 
 
+def check_no_memory(checks):
+    """Where the system refuses memory, the object is there too."""
+    words = [PROGRAM, 'run', INPUT / 'block/block.inp', '-o', FOLDER / 'none.h5', '--overwrite',
+             '--memory', '1T', '--json']
+    for megabytes in range(120, 600, 20):
+        limit = megabytes*1000000
+        done = subprocess.run(words, capture_output=True, text=True, check=False, timeout=60,
+                              env={**os.environ, 'OPENBLAS_NUM_THREADS': '1'},
+                              preexec_fn=lambda most=limit: resource.setrlimit(
+                                  resource.RLIMIT_AS, (most, most)))
+        if 'error: out of memory: ' in done.stderr:
+            break
+    found = json.loads(done.stdout)
+    checks.true(done.returncode == 4 and found['status'] == 4 and 'ulimit' in found['error']['cure']
+                and found['error']['cause'] == 'out of memory', f'out of memory at {megabytes} MB')
+
+
 def main():
     checks = Checks()
+    check_no_memory(checks)
     check_progress(checks)
     check_terminals(checks)
     check_endings(checks)
