@@ -64,7 +64,8 @@ class Result:
         columns = dict(columns_of(found)) if isinstance(found, h5py.Group) else {}
 
         def missing(name, known):
-            return f"'{self.path}' has no column '{name}' in /{group}; there are: {shortened(known)}"
+            return (f"'{self.path}' has no column '{name}' in /{group}; "
+                    f"there are: {shortened(known)}")
 
         if not columns and not empty:
             written = WRITTEN_BY.get(group)
@@ -143,7 +144,8 @@ class Result:
 
     def contact(self, name):
         """The history of a contact pair or set of gaps: result.contact("SLAVE-MASTER").CF1."""
-        return self._owner("contact", name if name in self.contacts else name.upper())
+        known = f"history/contact_{name}" in self.file
+        return self._owner("contact", name if known else name.upper())
 
     def _owners(self, kind):
         """What has a history."""
@@ -152,8 +154,9 @@ class Result:
 
     def _owner(self, kind, name):
         """The columns of one of them."""
-        known, group = self._owners(kind), f"history/{kind}_{name}"
-        if name not in known:
+        group = f"history/{kind}_{name}"
+        if group not in self.file:
+            known = self._owners(kind)
             there = f"; there are: {shortened(known)}" if known else ""
             raise MissingError(f"'{self.path}' has no history of {kind} {name} "
                                f"({OWNERS[kind]} writes it){there}")

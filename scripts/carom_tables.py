@@ -1,4 +1,4 @@
-"""Tables of a result file: columns that are read by slices or blocks, and what is drawn of long ones."""
+"""Tables of a result file: columns read by slices or blocks, and what is drawn of long ones."""
 
 import collections
 import fnmatch
@@ -27,8 +27,12 @@ class Column(Rows):
 
     def __init__(self, item, name):
         self.item, self.name = item, name
-        text = item.attrs.get("description", name)
-        self.description = text.decode("utf-8", "replace") if isinstance(text, bytes) else str(text)
+
+    @property
+    def description(self):
+        """What it is, in words."""
+        text = self.item.attrs.get("description", self.name)
+        return text.decode("utf-8", "replace") if isinstance(text, bytes) else str(text)
 
     def __len__(self):
         return len(self.item)

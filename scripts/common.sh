@@ -5,6 +5,10 @@ build="$root/build"
 venv="$root/.venv"
 python="$venv/bin/python"
 scratch="$root/build/scratch"
+# What the tests need beside: CalculiX and its test decks (tests/verification/verify_foreign.py), EGL and
+# OpenGL for VTK to draw with (verify_paraview.py), the libraries that gmsh loads (verify_meshes.py)
+test_packages='calculix-ccx calculix-ccx-test libegl1 libgl1 libxrender1 libglu1-mesa libxcursor1 libxft2
+   libxinerama1 libgomp1'
 
 # Temporary files and caches inside the checkout; the linear algebra of small models on one thread
 prepare_environment() {

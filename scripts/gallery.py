@@ -1,8 +1,9 @@
 """The pictures of the gallery, one a case: gallery.py [CASE ...] [--into demo | --write] [--list]
 
-Runs the decks of the cases of input/ (all, or those named) and draws what comes out: CASE.png in the
-folder given, by --write in input/CASE/, where the READMEs show them. Small files: 800 by 500 points in
-a palette. Result files stay in a folder that is removed at the end, or in --results FOLDER.
+Runs the decks of the cases of input/ (all, or those named) and draws what comes out: CASE.png in
+the folder given, by --write in input/CASE/, where the READMEs show them. Small files: 800 by 500
+points in a palette. Result files go at the end, or stay in --results FOLDER and are used again
+while they are younger than program and decks.
 """
 
 import argparse
@@ -26,12 +27,12 @@ LARGEST = 100_000  # bytes of a picture
 
 
 def at_anchored_events(deck):
-    """All impacts of an increment in one more solution each: for decks whose own way takes minutes."""
+    """Events take solutions, no steps of their own: for a deck whose own way takes minutes."""
     deck.set("IMPACT", EVENTS="ANCHOR")
 
 
 class Case:
-    """A folder of input/: the function that draws it, its decks, an edit of them for the picture."""
+    """A folder of input/: the function that draws it, its decks, an edit of them."""
 
     def __init__(self, draw, *decks, edit=None):
         self.draw, self.decks, self.edit = draw, decks, edit
@@ -52,7 +53,7 @@ CASES = {
     "cantilever": Case(bodies.draw_cantilever, "cantilever", "modes"),
     "thick_cylinder": Case(bodies.draw_thick_cylinder, "elastic_cax8", "plastic_cax4"),
     "from_gmsh": Case(frames.draw_from_gmsh, "ring"),
-    "from_freecad": Case(frames.draw_from_freecad, "FEMMeshGmsh", "impact"),
+    "from_freecad": Case(frames.draw_from_freecad, "export/FEMMeshGmsh", "impact"),
     "hertz": Case(bodies.draw_hertz, "nonmatching", "nonmatching_nodes"),
     "block": Case(frames.draw_block, "block", edit=at_anchored_events),
     "dropped_disc": Case(frames.draw_dropped_disc, "q4", "q4_fictitious"),
@@ -69,14 +70,14 @@ def is_fresh(result, carom, name):
     if not result.exists():
         return False
     made = result.stat().st_mtime
-    sources = [carom, *(INPUT / name).glob("*.in[cp]")]
+    sources = [carom, *(INPUT / name).rglob("*.in[cp]")]
     return all(path.stat().st_mtime < made for path in sources)
 
 
 def compute(carom, name, deck, results):
     """Runs a deck of a case, unless its result is there; the path of the result."""
     path = INPUT / name / f"{deck}.inp"
-    result = results / f"{name}.{deck}.h5"
+    result = results / f"{name}.{deck.replace('/', '.')}.h5"
     if is_fresh(result, carom, name):
         return result
     if CASES[name].edit:

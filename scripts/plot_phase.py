@@ -18,7 +18,7 @@ from matplotlib.colors import LogNorm
 WORST_MISMATCH = 1.5  # between an event's and the history's velocity, in changes of one increment
 MOST_ROWS = 200000  # beyond which the number of rows in each pixel is drawn, not the path
 MOST_JUMPS = 400  # impacts beyond which they are not drawn
-PIXELS = 480
+PIXELS = 360
 
 
 def choose_node(result, dof):
@@ -98,7 +98,8 @@ def draw_density(figure, axes, columns):
     ranges = []
     for column in columns:
         low, high = (float(part[0]) for part in minmax(column, 1))
-        ranges.append((low, high if high > low else low + 1.0))
+        margin = 0.05 * (high - low) or 1.0
+        ranges.append((low - margin, high + margin))
     counts = np.zeros(PIXELS * PIXELS, int)
     for pixels in Computed(lambda d, v: pixel(v, *ranges[1]) * PIXELS + pixel(d, *ranges[0]),
                            *columns).blocks():

@@ -6,8 +6,7 @@ root=$(cd "$(dirname "$0")/.." && pwd -P)
 . "$root/scripts/common.sh"
 
 prepare_environment
-# CalculiX and its test decks: compared with in tests/verification/verify_foreign.py
-install_packages calculix-ccx calculix-ccx-test
+install_packages $test_packages
 make_environment "$root/tests/requirements.txt"
 configure_and_build "$build" all -DCMAKE_BUILD_TYPE=Release -DCAROM_TESTS=ON
 say 'running the tests'

@@ -86,7 +86,7 @@ def node_set(nodes):
 
 
 def main():
-    folder = Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parent)
+    folder = Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parent / "export")
     x, triangles = arch()
     feet = [i for i, (_, y) in enumerate(x, 1) if y == 0.0]
     crown = int(np.argmin(np.hypot(x[:, 0], x[:, 1] - OUTSIDE))) + 1

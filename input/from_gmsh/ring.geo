@@ -1,4 +1,4 @@
-// A ring, outside 50 mm, inside 40 mm: gmsh ring.geo -2 -o ring_mesh.inp
+// A ring, outside 50 mm, inside 40 mm: gmsh ring.geo -2 -o mesh/ring.inp
 SetFactory("OpenCASCADE");
 outside = 50;
 inside = 40;

@@ -30,7 +30,7 @@ install(DIRECTORY input DESTINATION ${data_folder} FILES_MATCHING
   PATTERN *.inp PATTERN *.inc PATTERN *.md PATTERN *.py PATTERN *.png PATTERN *.geo
   PATTERN __pycache__ EXCLUDE)
 # Those that need results only; the others are for a checkout
-file(GLOB scripts CONFIGURE_DEPENDS scripts/carom_*.py scripts/plot_*.py scripts/mesh_from_*.py
+file(GLOB scripts CONFIGURE_DEPENDS scripts/carom_*.py scripts/plot_*.py scripts/mesh_from_*.py scripts/gmsh_*.py
   scripts/*_solutions.py)
 install(FILES ${scripts} scripts/animate.py scripts/compare_exact.py scripts/requirements.txt
   DESTINATION ${data_folder}/scripts)

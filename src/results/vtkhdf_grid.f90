@@ -124,6 +124,7 @@ contains
       call add_field(self, 'Point', name, n_components, self%n_points, field)
       if (present(partial)) self%fields(field)%partial = partial
       call create_field(self, file, self%fields(field), description, error)
+      if (.not. allocated(error)) call mark_active(self, file, 'Point', field, error)
    end subroutine add_point_field
 
    !> Adds a quantity of the cells; only before the first frame.
@@ -137,7 +138,32 @@ contains
 
       call add_field(self, 'Cell', name, n_components, self%n_cells, field)
       call create_field(self, file, self%fields(field), description, error)
+      if (.not. allocated(error)) call mark_active(self, file, 'Cell', field, error)
    end subroutine add_cell_field
+
+   !> Marks the first vector and the first tensor of a place as its active ones, which filters that
+   !> want a vector take unless they are told another: U, that comes first, moves the mesh.
+   subroutine mark_active(self, file, place, field, error)
+      type(vtkhdf_grid_type), intent(in) :: self
+      type(hdf5_file_type), intent(inout) :: file
+      character(len=*), intent(in) :: place   !! 'Point' or 'Cell'
+      integer, intent(in) :: field            !! the one that was added last
+      type(error_type), allocatable, intent(out) :: error
+      character(len=:), allocatable :: group
+      integer :: i, n_components
+
+      group = root//'/'//place//'Data'
+      n_components = size(self%fields(field)%held, 1)
+      if (n_components < 3) return
+      do i = 1, field - 1
+         if (size(self%fields(i)%held, 1) == n_components &
+               .and. index(self%fields(i)%data_path, group//'/') == 1) return
+      end do
+      associate (name => self%fields(field)%data_path(len(group) + 2:))
+         if (n_components == 3) call file%set_attribute(group, 'Vectors', name, error)
+         if (n_components == 6) call file%set_attribute(group, 'Tensors', name, error)
+      end associate
+   end subroutine mark_active
 
    !> Appends a field, all zero, to the list.
    subroutine add_field(self, place, name, n_components, n_values, field)

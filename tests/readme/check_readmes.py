@@ -105,13 +105,19 @@ class Page:
             status = status or int(self.said.count(f'"{words[1]}"') != 2)
         else:
             command = command.replace(' BUILD ', f' {self.shell.build} ')
-            folder = self.path.parent if (self.shell.folder / self.path.parent / words[0]).is_file() \
-                or re.match(r'make_\w+\.py', words[0]) else '.'
+            folder = self._folder(words)
             command = re.sub(r'^(make_\w+\.py)', r'python \1', command)
             command = re.sub(r'^(input/\S+\.py)', r'python \1', command)
             status, self.said = self.shell.run(command, folder)
         if status != wanted:
             self._fail(line, f'`{command}` ended with status {status}, not {wanted}:\n{self.said[-1500:]}')
+
+    def _folder(self, words):
+        """The folder of the page if the first file that a command names is found there only; else the top."""
+        for word in words[:3]:
+            if not word.startswith('-') and '/' not in word and (self.shell.folder / self.path.parent / word).is_file():
+                return self.path.parent if not (self.shell.folder / word).is_file() else '.'
+        return '.' if not words[1:] or not words[1].startswith('../../') else self.path.parent
 
     def _options(self, words):
         """A script that takes long: the options that the page gives it are those it has."""
@@ -197,6 +203,18 @@ def pages():
     return sorted(map(Path, names))
 
 
+def finds_mistakes(program, build):
+    """A page of mistakes: each of its blocks must fail, and its table by two or more."""
+    page = Page(Path('tests/readme/wrong_page.txt'), Shell(ROOT, program, build), set())
+    try:
+        page.check()
+    finally:
+        page.shell.close()
+    wrong = sum(page.counts.values()) - page.counts['lines in a table']
+    lines = {failure.split(': ')[0] for failure in page.failures}
+    return wrong == 11 and len(lines) == wrong + 1 and len(page.failures) > wrong + 2
+
+
 def main():
     """All pages, or those given; status 1 if anything failed."""
     program, build = (Path(word).resolve() for word in sys.argv[1:3])
@@ -213,6 +231,8 @@ def main():
         print(f'{path}: ' + (', '.join(f'{count} {kind}' for kind, count in page.counts.items()) or 'nothing to run'))
     if not sys.argv[3:]:
         failures += [f'readme_rules.py: nothing uses {row}' for row in INSTEAD + DELEGATED if row not in used]
+        if not finds_mistakes(program, build):
+            failures.append('the page of mistakes, tests/readme/wrong_page.txt, is not found wrong throughout')
     times = os.times()
     print(f'{times.user + times.system + times.children_user + times.children_system:.1f} s of processor time')
     if failures:

@@ -164,6 +164,6 @@ def inline_commands(text):
             continue
         for span in re.findall(r'`([^`]+)`', line):
             if ' ' in span.strip() and is_command(span) \
-                    and not re.search(r'[…<>]|\.\.\.|^kill -\w+$|\b(DECK|CARD)\b', span):
+                    and not re.search(r'[…<>]|\.\.\.|^kill -\w+$|\b(DECK|CARD)\b|^carom (run|check)$', span):
                 found.append((number, span))
     return found

@@ -39,6 +39,12 @@ class Parameter:
         return "~" * self.not_yet + self.form + "!" * self.required
 
     @property
+    def default(self):
+        """The default, where it is a word or a number; else None."""
+        found = re.search(r"[dD]efault:? (?:`([^`]+)`|(\d+(?:\.\d+)?(?:[e/]-?\d+)?))", self.text)
+        return found and (found[1] or found[2])
+
+    @property
     def tells_default(self):
         """Whether it says what holds without it; a flag, a required one and an error need not."""
         free = self.required or self.not_yet or self.form == ""

@@ -4,6 +4,7 @@
   parameters, which take a value or not, are required or not yet known alike, and have a default.
 - A wrong value given to each parameter, a wrong word in each field: the words that the reader then
   allows are those of the entry.
+- A default that the entry gives as a word or number changes nothing when it is written.
 - Each example, put into the whole deck that it names, runs. So do these decks.
 - `carom help` prints each entry, whole, in any spelling, no wider than 100 columns.
 """
@@ -15,6 +16,8 @@ import sys
 import tempfile
 from pathlib import Path
 
+import h5py
+
 from reference import Card, assemble, indented, read_entries, split_cards, squeezed
 
 LEVELS = {
@@ -22,6 +25,13 @@ LEVELS = {
     "note": "anywhere.",
 }
 WRONG = "XQZ"
+# What else a card must have or lack for a parameter to mean anything
+FICTITIOUS = {"METHOD": "FICTITIOUS FORCE", "BETA": None}
+CIRCUMSTANCES = {
+    ("IMPACT", "RETURN"): FICTITIOUS, ("IMPACT", "SOLUTION"): FICTITIOUS,
+    ("ELEMENT GROUP", "MASS"): {"SCHEME": "IMPLICIT"}, ("DYNAMIC", "GAMMA"): {"ALPHA": None},
+    ("DYNAMIC", "TOLERANCE"): {"DIRECT": None, "ALPHA": None},
+}
 INCLUDED = "*NSET, NSET=EXTRA\n1\n"
 WIDTH, SUMMARY = 100, 74
 
@@ -204,6 +214,40 @@ def check_data_words(bench):
         bench.report("only", n_lists, "data lines have named their words")
 
 
+def check_defaults(bench):
+    """A default that is written out: the same results as without it."""
+    n_defaults = 0
+    for name, entry in bench.cards.items():
+        kind, example = entry.examples()[0]
+        deck = bench.deck(kind, example)
+        for parameter in entry.parameters()[0].values():
+            if parameter.default is None:
+                continue
+            n_defaults += 1
+            results = []
+            for value in (None, parameter.default):
+                settings = {**CIRCUMSTANCES.get((name, parameter.name), {}), parameter.name: value}
+                done = bench.try_deck("run", spoil(deck, name, lambda card, s=settings: [
+                    card.set(word, setting) for word, setting in s.items()]))
+                if done.returncode != 0:
+                    bench.report(f"*{name}, {parameter.name}={value}:", done.stderr)
+                results.append(done.returncode == 0 and recorded(bench.folder / "out.h5"))
+            if results[0] != results[1]:
+                bench.report(f"*{name}: {parameter.default} is not the default of {parameter.name}")
+    if n_defaults < 25:
+        bench.report("only", n_defaults, "parameters have a default that can be tried")
+
+
+def recorded(path):
+    """All numbers that a run recorded, by name: all but the deck and the costs."""
+    found = {}
+    with h5py.File(path, "r") as file:
+        for group in file.keys() - {"cost", "model", "restart"}:
+            file[group].visititems(lambda name, item, group=group: found.update(
+                {f"{group}/{name}": item[()].tobytes()} if isinstance(item, h5py.Dataset) else {}))
+    return found
+
+
 def wrong_field(row, column):
     """A change of a card: a wrong word in a field."""
     def change(card):
@@ -267,8 +311,8 @@ def main():
         bench = Bench(given.carom, folder)
         check_cards(bench)
         if not bench.mistakes:
-            for check in (check_parameters, check_values, check_data_words, check_examples,
-                          check_help):
+            for check in (check_parameters, check_values, check_data_words, check_defaults,
+                          check_examples, check_help):
                 check(bench)
     for mistake in bench.mistakes:
         print(mistake)

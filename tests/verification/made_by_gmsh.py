@@ -121,7 +121,7 @@ def files(checks, gmsh, turned):
     """Files of gmsh and CAD through mesh_from_gmsh.py."""
     path = made(checks, 'ring.geo', GEO, '--type', 'CPS', says='NSET TOP')
     deck = (INPUT / 'from_gmsh' / 'ring.inp').read_text()
-    for old, new in (('ring_mesh.inp', str(path)), ('*SURFACE, NAME=skin\nrim\n', ''),
+    for old, new in (('mesh/ring.inp', str(path)), ('*SURFACE, NAME=skin\nrim\n', ''),
                      ('skin, floor', 'rim, floor')):
         deck = deck.replace(old, new)
     ring(checks, deck, 'ring.geo', 45, 'RIM-FLOOR')
@@ -154,7 +154,9 @@ def check(checks, gmsh):
     """All of it; `gmsh` is the module."""
     turned = written(checks, gmsh)
     ring_mesh = inp_of(gmsh, GEO)
-    (folder := scratch_folder()).joinpath('ring_mesh.inp').write_text(ring_mesh)
+    folder = scratch_folder()
+    (folder / 'mesh').mkdir()
+    (folder / 'mesh' / 'ring.inp').write_text(ring_mesh)
     deck = folder / 'ring.inp'
     deck.write_text((INPUT / 'from_gmsh' / 'ring.inp').read_text())
     ring(checks, deck, 'the ring meshed anew', 45)

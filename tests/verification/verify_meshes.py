@@ -12,6 +12,7 @@ from carom_case import INPUT, ROOT, Checks, run_deck, scratch_folder
 from gmsh_text import QUADS, TRIANGLES, gmsh_text
 
 GMSH, FREECAD = INPUT / 'from_gmsh', INPUT / 'from_freecad'
+EXPORT = FREECAD / 'export'
 REST = """*SOLID SECTION, ELSET={part}, MATERIAL=m{elements}
 *MATERIAL, NAME=m
 *ELASTIC
@@ -125,13 +126,13 @@ def ring(checks, deck, what, off, pair='SKIN-FLOOR'):
 
 def freecad(checks):
     """FreeCAD's deck at rest, whole and split, and the impact of its mesh."""
-    rest = run_deck(FREECAD / 'FEMMeshGmsh.inp')
+    rest = run_deck(EXPORT / 'FEMMeshGmsh.inp')
     up = sum(rest[f'history/{node}/RF2'][-1] for node in rest.file['history'] if node != 'time')
     checks.close(up, 1000, 1e-8, 'FreeCAD: the reactions carry the load')
     n = int(rest['VTKHDF/NumberOfPoints'][0])
     checks.close(rest['VTKHDF/PointData/U'][-n:, 1].min(), -0.010360, 1e-6, 'FreeCAD: sag of the crown')
-    split = (FREECAD / 'FEMMeshGmsh.inp').read_text()
-    whole = re.sub(r'\*INCLUDE,INPUT=(\S+)', lambda found: (FREECAD / found[1]).read_text(), split)
+    split = (EXPORT / 'FEMMeshGmsh.inp').read_text()
+    whole = re.sub(r'\*INCLUDE,INPUT=(\S+)', lambda found: (EXPORT / found[1]).read_text(), split)
     same = run_deck(whole)
     checks.close(same['VTKHDF/PointData/U'], rest['VTKHDF/PointData/U'], 0, 'FreeCAD: in one file')
     older = whole.replace('*STEP, INC=2000', '*STEP').replace('1.0,1.0,1e-05,1.0\n', '')
@@ -149,7 +150,7 @@ def freecad(checks):
     folder = scratch_folder()
     subprocess.run([sys.executable, FREECAD / 'make_arch.py', folder], check=True)
     for path in folder.iterdir():
-        checks.true(path.read_text() == (FREECAD / path.name).read_text(), f'{path.name} is as made')
+        checks.true(path.read_text() == (EXPORT / path.name).read_text(), f'{path.name} is as made')
     for what, old, new, words in (
             ('shells', 'TYPE=CPS6', 'TYPE=S6', 'set the model space of the solver'),
             ('a section of shells', '*SOLID SECTION', '*SHELL SECTION', 'write *SOLID SECTION'),
@@ -171,7 +172,7 @@ def main():
     written_as_gmsh_does(checks)
     refused_of_gmsh(checks)
     ring(checks, GMSH / 'ring.inp', 'the ring', 1.0)
-    checks.at_most((GMSH / 'ring_mesh.inp').stat().st_size, 60000, 'size of the mesh file, bytes')
+    checks.at_most((GMSH / 'mesh' / 'ring.inp').stat().st_size, 60000, 'size of the mesh file, bytes')
     freecad(checks)
     try:
         import gmsh

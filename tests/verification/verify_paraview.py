@@ -82,13 +82,17 @@ def cells(checks):
         s, mises = array(grid, where, 'S'), array(grid, where, 'MISES')
         checks.close(von_mises(s), mises, 1e-10 * mises.max(), f'MISES from S of each {where}')
         checks.at_least(mises.max(), 1.0, f'there are stresses at the {where}s')
-    jacobians(checks, grid, kinds)
+    marks = {place: {key: np.asarray(value).item().decode() for key, value in
+                     run.file[f'VTKHDF/{place}Data'].attrs.items()} for place in ('Point', 'Cell')}
+    checks.true(marks == {'Point': {'Vectors': 'U', 'Tensors': 'S'}, 'Cell': {'Tensors': 'S'}},
+                f'the active vector is U, the active tensor S: {marks}')
+    middles(checks, grid, kinds)
     place = places(grid)
     checks.close(places(warped(grid)), place + array(grid, 'point', 'U'), 1e-12, 'Warp By Vector adds U')
     checks.close(array(frame(run.path, 0), 'point', 'U'), np.zeros_like(place), 0, 'no U at the start')
 
 
-def jacobians(checks, grid, kinds):
+def middles(checks, grid, kinds):
     """The nodes of curved cells are in VTK's order: the middle nodes lie between their corners."""
     x = places(grid)
     for i, kind in enumerate(kinds):
@@ -97,8 +101,8 @@ def jacobians(checks, grid, kinds):
         ids = grid.GetCell(i).GetPointIds()
         p = x[[ids.GetId(k) for k in range(ids.GetNumberOfIds())]]
         n = {'CPE6': 3, 'CPE8': 4, 'T2D3': 2}[kind]
-        middles = (p[:n] + np.roll(p[:n], -1, axis=0)) / 2 if n > 2 else (p[:1] + p[1:2]) / 2
-        checks.close(p[n:], middles, 1e-12, f'middle nodes of cell {i + 1} ({kind})')
+        expected = (p[:n] + np.roll(p[:n], -1, axis=0)) / 2 if n > 2 else (p[:1] + p[1:2]) / 2
+        checks.close(p[n:], expected, 1e-12, f'middle nodes of cell {i + 1} ({kind})')
 
 
 def shear(checks):
