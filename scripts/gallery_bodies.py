@@ -22,7 +22,7 @@ def draw_cantilever(runs):
     undeformed(axes["s"], mesh)
     painted = body(axes["s"], mesh, 1, "S11", (-6e5, 6e5), 1e4, SIGNED)
     window(axes["s"], (-0.03, -0.3), (1.06, 0.07),
-           f"force 1000 N at the tip: deflection {deflection:.4g} m (beam: 1.919e-05 m)")
+           f"1000 N at the tip: {deflection:.4g} m (beam: 1.919e-05 m)")
     drawn = bar(made, painted, axes["s"], "S11 (MPa)", aspect=10, ticks=[-6e5, 0, 6e5])
     drawn.ax.set_yticklabels(["−0.6", "0", "0.6"])
     note(axes["s"], 0.02, -0.25, "displacements × 10 000")
