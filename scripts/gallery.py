@@ -69,14 +69,14 @@ def is_fresh(result, carom, name):
     if not result.exists():
         return False
     made = result.stat().st_mtime
-    sources = [carom, *(INPUT / name).glob("*.in[cp]")]
+    sources = [carom, *(INPUT / name).rglob("*.in[cp]")]
     return all(path.stat().st_mtime < made for path in sources)
 
 
 def compute(carom, name, deck, results):
     """Runs a deck of a case, unless its result is there; the path of the result."""
     path = INPUT / name / f"{deck}.inp"
-    result = results / f"{name}.{deck.replace('/', '_')}.h5"
+    result = results / f"{name}.{deck.replace('/', '.')}.h5"
     if is_fresh(result, carom, name):
         return result
     if CASES[name].edit:

@@ -1,7 +1,7 @@
 !> What a group of solids asks of a material that is not linear elastic: at a point, the stress for
 !> a strain. A law keeps nothing of a point itself: it gets the state of the last accepted increment
 !> and hands back the updated one. Components are 11 22 33 12 with engineering shear strain; in
-!> plane stress the law finds strain 33 by itself and strain(3) is not looked at. Time plays no part.
+!> plane stress the law finds strain 33 by itself and strain(3) is not looked at. Time is not known.
 module point_law
    use kinds, only: wp
    implicit none

@@ -52,11 +52,12 @@ def make_copy(source, target):
     """The sources in a new folder, with all that src/README.md adds."""
     shutil.rmtree(target, ignore_errors=True)
     os.makedirs(target)
-    for name in ("CMakeLists.txt", "LICENSE"):
-        shutil.copy(os.path.join(source, name), target)
-    shutil.copytree(os.path.join(source, "src"), os.path.join(target, "src"))
-    for name in ("unit/element", "unit/base", "pfunit_lite"):
-        shutil.copytree(os.path.join(source, "tests", name), os.path.join(target, "tests", name))
+    for name in os.listdir(source):
+        if os.path.isfile(os.path.join(source, name)):
+            shutil.copy(os.path.join(source, name), target)
+    for name in ("src", "input", "scripts", "tests/unit/element", "tests/unit/base", "tests/pfunit_lite"):
+        shutil.copytree(os.path.join(source, name), os.path.join(target, name),
+                        ignore=shutil.ignore_patterns("__pycache__", "*.h5", "*.png"))
     with open(os.path.join(source, "src", "README.md"), encoding="utf-8") as file:
         copies, changes = read_changes(file.read())
     for origin, place in copies:

@@ -1,7 +1,8 @@
 """Check src/README.md against the sources, or write its table of files anew (--write).
 
 Every `name.f90` it names must be in src, every `name.f90: thing` a procedure or type there, and every
-file of src must stand once in its last section, "Every file".
+file of src must stand once in its last section, "Every file". Its table of layers must say what
+src/CMakeLists.txt says.
 """
 import argparse
 import re
@@ -28,9 +29,18 @@ def first_sentence(text):
 
 
 def layers(root):
-    """Folder names in the order of src/CMakeLists.txt."""
+    """What each layer may use, in the order of src/CMakeLists.txt."""
     text = (root / "src" / "CMakeLists.txt").read_text(encoding="utf-8")
-    return re.findall(r"^carom_layer\((\w+)", text, re.MULTILINE)
+    rows = re.findall(r"^carom_layer\((\w+)(?:\s+USES\s+([a-z\s]+))?", text, re.MULTILINE)
+    return {name: set(used.split()) for name, used in rows}
+
+
+def layer_faults(root, text):
+    """Layers whose row in the text is not that of the build."""
+    rows = dict(re.findall(r"^\| (\w+) \| [^|]+ \| ([a-z, –]+) \|$", text, re.MULTILINE))
+    return [f"the row of layer {name} is not that of src/CMakeLists.txt"
+            for name, used in layers(root).items()
+            if set(re.findall(r"[a-z]+", rows.get(name, "none"))) != used]
 
 
 def table(root):
@@ -91,7 +101,7 @@ def main():
         text = text.split(TITLE)[0] + TITLE + table(ROOT)
         path.write_text(text, encoding="utf-8")
     known = known_things(ROOT)
-    found = faults(*known, text)
+    found = layer_faults(ROOT, text) + faults(*known, text)
     if not found and not self_test(*known, text):
         found = ["the check does not see a text that is spoilt"]
     if found:

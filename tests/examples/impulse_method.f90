@@ -5,10 +5,10 @@
 !>
 !>     0 <= p,  G v+ + e min(0, G v0) >= 0,  complementary,   v+ = v1 + M^-1 Gt p,
 !>
-!> with friction by Coulomb's law beside them; v0 is the velocity at the start of the step, v1 the one at its end without contact. A force p/h
-!> through the step would also have moved the bodies: d+ = d1 + h/2 M^-1 Gt p. No impact time is
-!> looked for, nothing touches for longer than a step, and an overlap of the order of h v is left:
-!> first order in h.
+!> with friction by Coulomb's law beside them; v0 is the velocity at the start of the step, v1 the
+!> one at its end without contact. A force p/h through the step would also have moved the bodies:
+!> d+ = d1 + h/2 M^-1 Gt p. No impact time is looked for, nothing touches for longer than a step,
+!> and an overlap of the order of h v is left: first order in h.
 module impulse_method
    use kinds, only: wp
    use errors, only: error_type
