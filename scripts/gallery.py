@@ -1,8 +1,9 @@
 """The pictures of the gallery, one a case: gallery.py [CASE ...] [--into demo | --write] [--list]
 
-Runs the decks of the cases of input/ (all, or those named) and draws what comes out: CASE.png in the
-folder given, by --write in input/CASE/, where the READMEs show them. Small files: 800 by 500 points in
-a palette. Result files stay in a folder that is removed at the end, or in --results FOLDER.
+Runs the decks of the cases of input/ (all, or those named) and draws what comes out: CASE.png in
+the folder given, by --write in input/CASE/, where the READMEs show them. Small files: 800 by 500
+points in a palette. Result files go at the end, or stay in --results FOLDER and are used again
+while they are younger than program and decks.
 """
 
 import argparse
@@ -26,12 +27,12 @@ LARGEST = 100_000  # bytes of a picture
 
 
 def at_anchored_events(deck):
-    """All impacts of an increment in one more solution each: for decks whose own way takes minutes."""
+    """Events take solutions, no steps of their own: for a deck whose own way takes minutes."""
     deck.set("IMPACT", EVENTS="ANCHOR")
 
 
 class Case:
-    """A folder of input/: the function that draws it, its decks, an edit of them for the picture."""
+    """A folder of input/: the function that draws it, its decks, an edit of them."""
 
     def __init__(self, draw, *decks, edit=None):
         self.draw, self.decks, self.edit = draw, decks, edit

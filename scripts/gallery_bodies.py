@@ -1,4 +1,4 @@
-"""Pictures of the gallery: solids, contact, friction, cracks; a function a case, its runs by deck."""
+"""Pictures of the gallery: solids, friction, cracks; a function a case, its runs by deck."""
 
 import numpy as np
 from contact_solutions import (
@@ -69,7 +69,8 @@ def draw_thick_cylinder(runs):
         place, *stress = along_radius(runs[name].mesh, frame)
         every = slice(None) if len(place) < 40 else slice(None, None, 4)
         for values, colour, mark, words in zip(stress, (BLUE, ORANGE), "os", ("radial", "hoop")):
-            axis.plot(place[every], values[every], mark, color=colour, ms=7, label=f"{words} stress")
+            axis.plot(place[every], values[every], mark, color=colour, ms=7,
+                      label=f"{words} stress")
         for i, curve in enumerate(exact):
             axis.plot(r, curve, **EXACT, label=None if i else "exact")
         axis.set(xlabel="radius", xlim=(0.96, 2.04))
@@ -98,7 +99,6 @@ def draw_strip(runs):
               ylabel="1000 ×\ncontact force")
     force.legend(loc="upper right", bbox_to_anchor=(1.0, 1.05))
     strip, mesh = axes["strip"], runs["implicit"].mesh
-    low, high = lines_of(mesh)
     painted = None
     for row, wanted in enumerate((0.0, 0.2, 0.6, 1.2)):
         frame = nearest(mesh.times, wanted)
@@ -106,8 +106,9 @@ def draw_strip(runs):
         line = np.flatnonzero(mesh.points[:, 1] < 1e-9)
         line = line[np.argsort(mesh.points[line, 0])]
         x = mesh.points[line, 0] + mesh.values("Point", "U", frame)[line, 0]
-        painted = strip.pcolormesh(x, [-row - 0.35, -row + 0.35], np.tile(value[line] * 1000, (2, 1)),
-                                   shading="gouraud", cmap=SPEED, vmin=-10, vmax=10, rasterized=True)
+        painted = strip.pcolormesh(
+            x, [-row - 0.35, -row + 0.35], np.tile(value[line] * 1000, (2, 1)), shading="gouraud",
+            cmap=SPEED, vmin=-10, vmax=10)
         strip.text(1.02, -row, f"t = {mesh.times[frame]:.1f}", va="center", fontsize=13.5)
     strip.axvspan(-0.03, -0.0001, facecolor="0.87", edgecolor="0.6", hatch="//", lw=0)
     strip.set(xlim=(-0.03, 1.16), ylim=(-3.6, 0.6), yticks=[])
@@ -162,7 +163,7 @@ def draw_hertz(runs):
     axes = {"mesh": left.subplots(), "pressure": right.subplots()}
     radius, modulus = 0.75, 998.901
     mesh = runs["nonmatching"].mesh
-    x, pressure, found = pressures(mesh)
+    _, _, found = pressures(mesh)
     force = 2 * np.linalg.norm(found.forces(mesh.n_frames - 1).sum(axis=0))
     width, peak = hertz_line(force, radius, modulus)
     axis = axes["pressure"]
@@ -195,7 +196,7 @@ def draw_sliding_block(runs):
     level, slope = runs["sliding"], runs["slope"]
     v = axes["v"]
     time = np.linspace(0, 2, 401)
-    distance, stop = stopping(5.0, 0.3)
+    _, stop = stopping(5.0, 0.3)
     v.plot(level.time, level.node(level.nodes[0]).V1, color=BLUE, lw=5, alpha=0.6,
            label="level plane, carom")
     seen = slope.node(slope.nodes[0])
@@ -253,9 +254,9 @@ def draw_oblique_ball(runs):
     bar(made, painted, axes["a"], "Mises stress", aspect=12)
     force = axes["b"]
     normal, along = elastic.pair.CF2, elastic.pair.CF1
-    force.plot(elastic.time, np.abs(normal), color=BLUE, label="normal")
-    force.plot(elastic.time, np.abs(along), color=ORANGE, label="friction")
-    force.plot(elastic.time, 0.2 * np.abs(normal), color=BLACK, lw=1.4, ls="--", label="0.2 × normal")
+    force.plot(elastic.time, np.abs(normal), color=BLUE)
+    force.plot(elastic.time, np.abs(along), color=ORANGE)
+    force.plot(elastic.time, 0.2 * np.abs(normal), color=BLACK, lw=1.4, ls="--")
     force.set(xlabel="time", ylabel="force", xlim=(0, 1.2), ylim=(-0.3, 9.5))
     note(force, 0.66, 5.0, "normal", BLUE, weight="bold")
     note(force, 0.7, 1.0, "friction,\nμ × normal", "#9a6a00", weight="bold")

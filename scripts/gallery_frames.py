@@ -1,20 +1,20 @@
-"""Pictures of the gallery: bodies before, at and after a blow; a function a case, its runs by deck."""
+"""Pictures of the gallery: bodies before, at and after a blow; a function a case."""
 
 import numpy as np
 from gallery_style import (
-    BLUE, EXACT, ORANGE, SPEED, STRESS, bar, body, ground, halves, lines_of, mosaic, nearest, note,
+    BLUE, EXACT, ORANGE, SPEED, STRESS, bar, body, ground, halves, lines_of, mosaic, nearest,
     window,
 )
 
 
-def before_at_after(made, axes, mesh, times, field, limits, words, reach, colours=STRESS, plane=None,
-                    scale=1.0, unit="", factor=1):
-    """Three frames side by side in the same window and colours."""
-    low, high = reach
+def before_at_after(made, axes, mesh, times, look, reach, plane=None, scale=1.0, unit=("", 1)):
+    """Frames side by side in the same window and colours: look is the field, its limits, colours
+    and words, unit that of time and what makes it."""
+    (field, limits, colours, words), (low, high) = look, reach
     for axis, wanted in zip(axes, times):
         frame = nearest(mesh.times, wanted)
         painted = body(axis, mesh, frame, field, limits, scale, colours, 0.15)
-        window(axis, low, high, f"time {factor * mesh.times[frame]:.3g}{unit}")
+        window(axis, low, high, f"time {unit[1] * mesh.times[frame]:.3g}{unit[0]}")
         if plane is not None:
             ground(axis, plane, low[0], high[0], plane - low[1])
     return bar(made, painted, axes, words, aspect=14)
@@ -27,9 +27,9 @@ def draw_dropped_disc(runs):
     mesh = runs["q4"].mesh
     low, high = lines_of(mesh)
     plane = low[1] - 0.01
-    before_at_after(made, [axes[k] for k in "abc"], mesh, (0.02, 0.32, 1.0), "MISES", (0, 12),
-                    "Mises stress", ((low[0] - 0.1, plane - 0.18), (high[0] + 0.1, high[1] + 0.22)),
-                    plane=plane)
+    before_at_after(made, [axes[k] for k in "abc"], mesh, (0.02, 0.32, 1.0),
+                    ("MISES", (0, 12), STRESS, "Mises stress"),
+                    ((low[0] - 0.1, plane - 0.18), high + (0.1, 0.22)), plane=plane)
     for name, colour, line, words in (("q4_fictitious", ORANGE, "--", "fictitious force"),
                                       ("q4", BLUE, "-", "transformation")):
         run = runs[name]
@@ -50,8 +50,8 @@ def draw_two_discs(runs):
     low, high = places.min(axis=0) - 0.08, places.max(axis=0) + 0.08
     number, time = run.pair.CNUM, run.time
     middle = time[number > 0].mean()
-    before_at_after(made, [axes[k] for k in "abc"], mesh, (0, middle, 1.2), "MISES", (0, 8),
-                    "Mises stress", (low, high))
+    before_at_after(made, [axes[k] for k in "abc"], mesh, (0, middle, 1.2),
+                    ("MISES", (0, 8), STRESS, "Mises stress"), (low, high))
     force, push = np.abs(run.pair.CF1), np.abs(run.pair.CF2)
     axes["f"].plot(time, force, color=BLUE, label="along x")
     axes["f"].plot(time, push, color=ORANGE, ls="--", label="along y")
@@ -69,9 +69,8 @@ def draw_block(runs):
     mesh = run.mesh
     low, high = lines_of(mesh)
     dt = run.time[1]
-    before_at_after(made, [axes[k] for k in "abc"], mesh, (0, 30 * dt, 100 * dt), "V1", (-1, 1),
-                    "velocity V1", ((low[0] - 0.12, low[1] - 0.05), (high[0] + 0.05, high[1] + 0.05)),
-                    SPEED)
+    before_at_after(made, [axes[k] for k in "abc"], mesh, (0, 30 * dt, 100 * dt),
+                    ("V1", (-1, 1), SPEED, "velocity V1"), (low - (0.12, 0.05), high + 0.05))
     for k in "abc":
         axes[k].axvspan(low[0] - 0.12, low[0] - 5.4 * dt, facecolor="0.87", edgecolor="0.6",
                         hatch="//", lw=0, zorder=0)
@@ -96,9 +95,10 @@ def draw_from_gmsh(runs):
     scale = 3.0
     plane = low[1] - 0.2 * scale  # the gap is as much larger as the displacements
     lowest = run.time[int(np.argmin(run.node(run.nodes[0]).U2))]
-    before_at_after(made, [axes[k] for k in "abc"], mesh, (0, lowest, 3e-3), "MISES", (0, 16),
-                    "Mises (MPa)", ((low[0] - 8, plane - 9), (high[0] + 8, high[1] + 9)),
-                    plane=plane, scale=scale, unit=" ms", factor=1000)
+    before_at_after(made, [axes[k] for k in "abc"], mesh, (0, lowest, 3e-3),
+                    ("MISES", (0, 16), STRESS, "Mises (MPa)"),
+                    ((low[0] - 8, plane - 9), high + (8, 9)), plane=plane, scale=scale,
+                    unit=(" ms", 1000))
     axes["f"].set_title("above: displacements × 3", fontsize=13.5, loc="right")
     axes["f"].plot(1000 * run.time, np.abs(run.pair.CF2), color=BLUE)
     axes["f"].set(xlabel="time (ms)", ylabel="contact force (N)", xlim=(0, 4))

@@ -1,4 +1,4 @@
-"""Pictures of the gallery: masses, bars, buildings; a function a case that takes its runs by deck."""
+"""Pictures of the gallery: masses, bars, buildings; a function a case, its runs by deck."""
 
 import numpy as np
 from contact_solutions import bars_head_on
@@ -139,7 +139,8 @@ def draw_bar(runs):
     cells, points = mesh.lines(True)
     middle = mesh.points[points, 0].mean(axis=1)
     order = np.argsort(middle)
-    stress = np.array([mesh.component("Cell", "S11", f)[cells][order] for f in range(mesh.n_frames)])
+    stress = np.array([mesh.component("Cell", "S11", frame)[cells][order]
+                       for frame in range(mesh.n_frames)])
     painted = axes[1].pcolormesh(mesh.times, middle[order] - mesh.points[:, 0].min(), stress.T,
                                  cmap=STRESS, vmin=-320, vmax=0, rasterized=True, shading="nearest")
     axes[1].set(xlabel="time", ylabel="place in\nthe bar", ylim=(0, 10))

@@ -1,4 +1,4 @@
-"""What the pictures of the gallery share: size, style, reading, bodies in colours. Nothing to be run."""
+"""What the pictures of the gallery share: size, style, bodies in colours. Nothing to be run."""
 
 import numpy as np
 from carom_mesh import Mesh

@@ -4,7 +4,10 @@ module contact_outlook
    use kinds, only: wp
    use model, only: model_type
    use surfaces, only: surface_type
-   use constraint_rows, only: row_rates
+   use constraint_rows, only: row_rates, row_accelerations
+   use mesh, only: element_mass, scheme_implicit, scheme_explicit
+   use structure, only: elastic_force
+   use wave_speeds, only: is_continuum
    use initial_contact, only: gaps_at_start
    use continuum_bodies, only: body_list_type
    use scene_setup, only: simulation_type
@@ -16,6 +19,8 @@ module contact_outlook
    !> Gaps below this part of the size of the bodies are none; cosine from which a direction is
    !> along another.
    real(wp), parameter :: touching = 1.0e-9_wp, along = 0.5_wp
+   !> What resists a translation with this part of what it does when bent is free.
+   real(wp), parameter :: free = 1.0e-9_wp
 
    !> The outlook of one pair, or of the gap elements of one set.
    type :: outlook_type
@@ -32,12 +37,14 @@ module contact_outlook
 
 contains
 
-   !> Looks at every pair in the state reached, by the velocities it has.
-   subroutine look_out(simulation, bodies, outlooks)
+   !> Looks at every pair in the state reached, by the velocities it has and free fall.
+   subroutine look_out(simulation, i_step, bodies, outlooks)
       type(simulation_type), intent(inout) :: simulation
+      integer, intent(in) :: i_step              !! in force
       type(body_list_type), intent(in) :: bodies
       type(outlook_type), allocatable, intent(out) :: outlooks(:)   !! by the names of the pairs
-      real(wp), dimension(simulation%scene%rows%n) :: gaps, rates
+      real(wp), dimension(simulation%scene%rows%n) :: gaps, rates, falls
+      real(wp) :: time
       integer :: i, p
       type(outlook_type) :: none
 
@@ -45,6 +52,7 @@ contains
       if (simulation%scene%rows%n == 0) return
       call gaps_at_start(simulation%scene, simulation%motion%motion, gaps)
       rates = row_rates(simulation%scene%rows, simulation%motion%motion)
+      falls = row_accelerations(simulation%scene%rows, free_fall(simulation, i_step))
       do i = 1, size(gaps)
          associate (row => simulation%contact%rows(i), one => outlooks(simulation%contact &
                %rows(i)%pair))
@@ -55,17 +63,79 @@ contains
                one%nearest = i
                one%gap = gaps(i)
             end if
-            if (.not. rates(i) < 0.0_wp) cycle
-            if (one%first > 0 .and. one%first_time <= -gaps(i)/rates(i)) cycle
+            time = time_to_close(max(0.0_wp, gaps(i)), -rates(i), -falls(i))
+            if (.not. time < huge(1.0_wp)) cycle
+            if (one%first > 0 .and. one%first_time <= time) cycle
             one%first = i
-            one%first_time = max(0.0_wp, -gaps(i)/rates(i))
-            one%closing_speed = -rates(i)
+            one%first_time = time
+            one%closing_speed = -rates(i) - falls(i)*time
          end associate
       end do
       do p = 1, size(outlooks)
          call find_duration(simulation, bodies, outlooks(p))
       end do
    end subroutine look_out
+
+   !> When a gap that closes at a speed and an acceleration is shut, huge if never.
+   pure real(wp) function time_to_close(gap, speed, acceleration) result(time)
+      real(wp), intent(in) :: gap, speed, acceleration
+      real(wp) :: square
+
+      time = huge(1.0_wp)
+      square = speed**2 + 2.0_wp*acceleration*gap
+      if (square < 0.0_wp .or. speed + sqrt(max(0.0_wp, square)) <= 0.0_wp) return
+      time = 2.0_wp*gap/(speed + sqrt(square))
+   end function time_to_close
+
+   !> Gravity of a step as the acceleration of all freedoms, if it acts on everything at once and
+   !> nothing holds the model against it: a translation strains no element. Else zero.
+   function free_fall(simulation, i_step) result(a)
+      type(simulation_type), intent(in) :: simulation
+      integer, intent(in) :: i_step
+      real(wp), dimension(simulation%scene%system%structure%map%n_freedoms) :: a, bent
+      integer :: i
+
+      a = 0.0_wp
+      associate (map => simulation%scene%system%structure%map, &
+            loads => simulation%model%steps(i_step)%gravity)
+         do i = 1, size(loads)
+            if (loads(i)%amplitude > 0 .or. .not. acts_on_all(simulation%model, loads(i)%set)) cycle
+            a = a + loads(i)%acceleration(map%dof)
+         end do
+         bent = a*[(real(1 - 2*modulo(map%node(i), 2), wp), i=1, size(a))]
+         if (any(map%prescribed .and. abs(a) > 0.0_wp)) a = 0.0_wp
+         if (.not. any(abs(a) > 0.0_wp)) return
+         if (resistance(simulation, a) > free*resistance(simulation, bent)) a = 0.0_wp
+      end associate
+   end function free_fall
+
+   !> Largest elastic force of displacements.
+   real(wp) function resistance(simulation, d)
+      type(simulation_type), intent(in) :: simulation
+      real(wp), intent(in) :: d(:)               !! (n_freedoms)
+      real(wp) :: force(size(d)), updated(size(simulation%motion%motion%history))
+
+      force = 0.0_wp
+      associate (structure => simulation%scene%system%structure, &
+            history => simulation%motion%motion%history)
+         updated = history
+         call elastic_force(structure, scheme_implicit, d, history, force, updated)
+         call elastic_force(structure, scheme_explicit, d, history, force, updated)
+      end associate
+      resistance = maxval([0.0_wp, abs(force)])
+   end function resistance
+
+   !> Whether a set has all elements with mass; 0 stands for all elements.
+   pure logical function acts_on_all(model, set)
+      type(model_type), intent(in) :: model
+      integer, intent(in) :: set
+      logical :: left(model%elements%n)
+
+      left = is_continuum(model%elements%kind(:model%elements%n)) .or. &
+            model%elements%kind(:model%elements%n) == element_mass
+      if (set > 0) left(model%element_sets(set)%members) = .false.
+      acts_on_all = set == 0 .or. .not. any(left)
+   end function acts_on_all
 
    !> The shorter of the times 2 L / c of those of both bodies that are free to rebound, L along the
    !> normal; nothing for surfaces that touch already and do not close.

@@ -43,7 +43,7 @@ contains
       type(outlook_type), allocatable :: outlooks(:)
 
       call find_bodies(bodies, simulation%model)
-      call look_out(simulation, bodies, outlooks)
+      call look_out(simulation, i_step, bodies, outlooks)
       if (i_step == 1) then
          call explain_model(self, simulation, bodies)
          call explain_materials(self, simulation%model, bodies)
@@ -63,7 +63,8 @@ contains
 
       associate (model => simulation%model, structure => simulation%scene%system%structure, &
             state => simulation%motion%motion)
-         if (len_trim(model%heading) > 0) call self%add('deck', trim(model%heading))
+         if (len_trim(model%heading) > 0) call self%add('deck', &
+               model%heading(:scan(model%heading//new_line('a'), new_line('a')) - 1))
          box = maxval(model%nodes%x(:, :model%nodes%n), dim=2) &
                - minval(model%nodes%x(:, :model%nodes%n), dim=2)
          call self%add('model', plural(model%nodes%n, 'node')//', ' &
@@ -263,10 +264,10 @@ contains
       if (outlook%first == 0) then
          text = text//', not closing at the start'
       else
-         text = text//'; closing at '//short(outlook%closing_speed)//', touches after ' &
-               //short(outlook%first_time)
+         text = text//'; touches after '//short(outlook%first_time)
          if (simulation%model%steps(1)%direct) text = text//' ('//to_text(outlook%first_time &
                /simulation%model%steps(1)%dt, 3)//' increments)'
+         text = text//' with speed '//short(outlook%closing_speed)
       end if
       call self%add('', text)
       if (outlook%body > 0 .and. outlook%duration > 0.0_wp) call self%add('', &

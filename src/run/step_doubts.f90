@@ -17,7 +17,7 @@ module step_doubts
 
    !> Increments in the longest period or in a contact below which neither is resolved, and what is
    !> advised; the trapezoidal rule lengthens periods by 0.8 and 0.13 %.
-   real(wp), parameter :: least_increments = 20.0_wp, least_of_contact = 25.0_wp, &
+   real(wp), parameter :: least_increments = 20.0_wp, least_of_contact = 10.0_wp, &
          good_increments = 50.0_wp
    !> With ORDER=4 so many times fewer do.
    real(wp), parameter :: of_fourth_order = 4.0_wp
@@ -53,7 +53,7 @@ contains
       if (simulation%scene%rows%n > 0 .and. i_step == 1) then
          call find_bodies(bodies, simulation%model)
          if (bodies%n > 0) then
-            call look_out(simulation, bodies, outlooks)
+            call look_out(simulation, i_step, bodies, outlooks)
             shortest = huge(1.0_wp)
             do p = 1, size(outlooks)
                if (outlooks(p)%body == 0 .or. outlooks(p)%first == 0) cycle

@@ -26,7 +26,10 @@ module unit_doubts
          substance_type('glass', [5.0e10_wp, 9.0e10_wp], [2400.0_wp, 2600.0_wp]), &
          substance_type('concrete', [2.0e10_wp, 5.0e10_wp], [2200.0_wp, 2550.0_wp]), &
          substance_type('wood', [8.0e9_wp, 1.6e10_wp], [350.0_wp, 800.0_wp]), &
-         substance_type('rubber', [5.0e5_wp, 2.0e7_wp], [900.0_wp, 1300.0_wp])]
+         substance_type('rubber', [5.0e5_wp, 2.0e7_wp], [900.0_wp, 1300.0_wp]), &
+         substance_type('plastic', [1.5e8_wp, 5.0e9_wp], [880.0_wp, 2300.0_wp])]
+   !> Stiffer ones are known by their numbers; of softer ones some are those of any example.
+   real(wp), parameter :: stiff = 1.9e10_wp
 
    !> Units that stresses and densities are written in, with the number that is 1 SI unit.
    integer, parameter :: n_stress = 4, n_density = 5
@@ -94,6 +97,8 @@ contains
             do r = 1, n_density
                if (.not. within(material%density, substances(i)%density*density_size(r))) cycle
                if (stress > 0 .and. .not. fit(s, r)) cycle
+               if (substances(i)%young(1) < stiff .and. density_names(r) == 't/m3' .and. &
+                     .not. fit(s, r)) cycle
                stress = s
                density = r
                substance = i

@@ -12,6 +12,7 @@ from carom_case import INPUT, ROOT, Checks, scratch_folder
 from gallery import CASES, LARGEST, compute, draw, save_small
 
 SIZE = (800, 500)
+QUICK = ('sdof', 'ball', 'cantilever', 'thick_cylinder')
 IMAGE = re.compile(r'!\[([^\]]*)\]\(([^)]+)\)')
 NAMED = re.compile(r'`([\w-]+\.(?:inp|inc|py))`', re.ASCII)
 
@@ -34,7 +35,8 @@ def unlike(one, other):
 
 
 def check_pictures(checks, folders):
-    """Small, readable, of one size, not empty."""
+    """Small, readable, of one size, not empty, each another."""
+    shown = {}
     for name in folders:
         path = INPUT / name / f'{name}.png'
         if not path.is_file():
@@ -45,7 +47,9 @@ def check_pictures(checks, folders):
             kind = image.format, image.mode, image.size
         checks.true(kind == ('PNG', 'P', SIZE), f'{name}: {kind}')
         checks.at_most(path.stat().st_size, LARGEST, f'{name}: bytes of the picture')
+        shown[path.read_bytes()] = name
         checks.true(0.03 < np.mean(pixels(path) < 250) < 0.9, f'{name}: neither empty nor full')
+    checks.true(len(shown) == len(folders), f'{len(shown)} different pictures')
 
 
 def check_readmes(checks, folders):
@@ -80,13 +84,13 @@ def check_index(checks, folders):
 
 
 def check_drawn_anew(checks, program):
-    """Two pictures drawn anew look as those committed; one of another motion does not."""
+    """Some pictures drawn anew look as those committed; one of another motion does not."""
     folder = scratch_folder()
     done = subprocess.run([sys.executable, '-B', str(ROOT / 'scripts' / 'gallery.py'), '--carom', program,
-                           '--into', str(folder), 'sdof', 'cantilever'],
+                           '--into', str(folder), *QUICK],
                           capture_output=True, text=True, timeout=300)
     checks.true(done.returncode == 0, f'gallery.py: status {done.returncode} {done.stderr[-300:]}')
-    for name in ('sdof', 'cantilever'):
+    for name in QUICK:
         anew, kept = folder / f'{name}.png', INPUT / name / f'{name}.png'
         with Image.open(anew) as image:
             checks.true(image.size == SIZE, f'{name} anew: size {image.size}')

@@ -106,6 +106,7 @@ mistake('gravity in mm/s2 with N/m2', ONE + section(1, '2.1e11, 0.3', '7850.')
         + step(dt='1e-9', end='2e-9', loads=GRAVITY.format('9810.')), None, 'gravity 9810 with a material in N/m2', 'write 9.81 m/s2')
 for name, elastic, density in (('an example', '1., 0.3', '1.'), ('kN, m, t', '3e7, 0.2', '2.5'),
                                ('GPa, kg, mm, ms', '210., 0.3', '7.85e-6'),
+                               ('nylon in N, mm, t, s', '2000., 0.4', '1.15e-9'),
                                ('no known substance', '900., 0.3', '7.')):
     checks.true('warning: ' not in answers(ONE + section(1, elastic, density) + SHORT)[0],
                 f'consistent units are free: {name}')
@@ -114,9 +115,9 @@ for name, elastic, density in (('an example', '1., 0.3', '1.'), ('kN, m, t', '3e
 mistake('a step of 16 increments a period', INPUT/'sdof'/'sdof.inp', INPUT/'sdof'/'sdof.inp',
         'the step 0.4 is too large for the longest period, 6.28: that is 16 increments',
         'take a step of about 0.13', options=('--define', 'dt=0.4'))
-mistake('a step of 20 increments a contact', INPUT/'bar'/'bar_implicit.inp', INPUT/'bar'/'bar_implicit.inp',
-        'is too large for a contact that lasts about 2 L / c = 0.667: that is 20 increments',
-        'take a step of about 0.013', options=('--define', 'dt=0.0333'))
+mistake('a step of 9.5 increments a contact', INPUT/'bar'/'bar_implicit.inp', INPUT/'bar'/'bar_implicit.inp',
+        'the step 0.07 is too large for a contact that lasts about 2 L / c = 0.667: that is 9.5 increments',
+        'take a step of about 0.013', options=('--define', 'dt=0.07'))
 
 # 6: slave and master exchanged
 FINE = ONE + block(2, (0., 2.), (1.1, 2.1), 12, 2) + section() + section(2)
@@ -150,6 +151,8 @@ mistake('no output', ONE + section() + step(output=''), ONE + section() + step()
         '*ENERGY PRINT')
 
 for deck in sorted(INPUT.glob('*/*.inp')):
+    if '*STEP' not in deck.read_text().upper():   # a mesh
+        continue
     said = subprocess.run([CAROM, 'check', str(deck)], capture_output=True, text=True, timeout=60).stdout
     checks.true('the deck is sound' in said and 'warning: ' not in said,
                 f'{deck.parent.name}/{deck.name} gets no warning')
