@@ -7,6 +7,7 @@ import tempfile
 import time
 from pathlib import Path
 
+from carom_deck import read_costs
 from carom_script import ScriptError
 
 FEWEST_STEPS = 10
@@ -95,7 +96,7 @@ class Programs:
                  "late": done.late}
         if log:
             found["increments"] = increments(output.with_suffix(".sta"))
-            found.update(counts(output.with_suffix(".log").read_text()))
+            found.update(counts(output))
         return found
 
 
@@ -109,14 +110,12 @@ def increments(path):
     return int(path.read_text().splitlines()[-1].split()[1])
 
 
-def counts(log):
-    """Numbers of a log."""
-    patterns = {
-        "factorizations": r"(\d+) factorizations", "solves": r"(\d+) solves",
-        "impacts": r"(\d+) impacts", "equations": r"(\d+) equations?, profile",
-        "log_seconds": r"solves, (\S+) s",
-    }
-    found = {}
+def counts(result):
+    """What a run has counted, from its results and its log."""
+    log = result.with_suffix(".log").read_text()
+    patterns = {"impacts": r"(\d+) impacts", "equations": r"(\d+) equations?, profile"}
+    costs = read_costs(result)
+    found = {name: costs[name] for name in ("factorizations", "solves") if name in costs}
     for name, pattern in patterns.items():
         match = re.findall(pattern, log)
         if match:

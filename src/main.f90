@@ -9,6 +9,8 @@ program carom
    use deck_help, only: print_help
    use program_version, only: version_text
    use simulation, only: run_deck
+   use json_text, only: json_type
+   use json_report, only: open_report, close_report
    use deck_check, only: check_deck
    use stop_signals, only: catch_signals
    use threads, only: set_threads
@@ -25,11 +27,13 @@ program carom
    end interface
 
    type(command_type) :: command
+   type(json_type) :: report
    type(error_type), allocatable :: error
    integer :: status
 
    call start_ranks()
    call read_command(command, error)
+   call open_report(report, command)
    if (my_rank() > 0) then
       call set_threads(command%threads)
       if (command%kind == command_run) call catch_signals()
@@ -41,9 +45,9 @@ program carom
       select case (command%kind)
       case (command_run)
          call set_threads(command%threads)
-         call run_deck(command, error)
+         call run_deck(command, report, error)
       case (command_check)
-         call check_deck(command, error)
+         call check_deck(command, report, error)
       case (command_reference)
          call print_help(command%topic, error)
       case (command_version)
@@ -54,9 +58,16 @@ program carom
    end if
    status = status_done
    if (allocated(error)) then
+      ! what has been said goes first, where both go to one place
+      flush (output_unit, iostat=status)
+      if (status /= 0) status = error%status
       write (error_unit, '(a)') trim(merge('stopped:', 'error:  ', error%status == &
             status_interrupted))//' '//error%message
       status = error%status
+   end if
+   if (command%json) then
+      call close_report(report, error)
+      write (output_unit, '(a)') report%text()
    end if
    call dismiss_ranks(status)
    call end_ranks()

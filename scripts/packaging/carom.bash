@@ -41,8 +41,8 @@ _carom() {
       return
    fi
    case $command in
-   run) options='-o --define --threads --quiet --overwrite --restart --memory --time-limit' ;;
-   check) options='--explain --define --memory' ;;
+   run) options='-o --define --threads --quiet --overwrite --restart --memory --time-limit --json' ;;
+   check) options='--explain --define --memory --json' ;;
    help) before='help' ;;
    *) return ;;
    esac

@@ -10,7 +10,7 @@ module memory_end
 
    !> Bytes that are a megabyte where memory is spoken of.
    integer(c_size_t), parameter :: megabyte = 1000000_c_size_t
-   integer(c_int), parameter :: standard_error = 2_c_int
+   integer(c_int), parameter :: standard_output = 1_c_int, standard_error = 2_c_int
 
    interface
       function write_bytes(file, bytes, n) bind(c, name='write') result(written)
@@ -45,19 +45,41 @@ contains
       end if
       call put(new_line('a')//'  cure: a smaller model or fewer requests (carom check tells what ' &
             //'takes the memory), fewer threads, or a higher limit (ulimit -v)'//new_line('a'))
+      if (wants_json()) call put('{"program": "carom", "status": 4, "ending": "failed", "error": ' &
+            //'{"message": "out of memory", "file": null, "line": null, '//new_line('a'), &
+            standard_output)
+      if (wants_json()) call put('"cause": "out of memory", "cure": "a smaller model, fewer ' &
+            //'requests or threads, or a higher limit (ulimit -v)"}}'//new_line('a'), &
+            standard_output)
       call exit_process(int(status_memory, c_int))
    end subroutine end_without_memory
 
-   subroutine put(text)
+   !> Whether the command line asks for JSON.
+   logical function wants_json()
+      character(len=7) :: word
+      integer :: i
+
+      wants_json = .false.
+      do i = 2, command_argument_count()
+         call get_command_argument(i, word)
+         if (word == '--json') wants_json = .true.
+      end do
+   end function wants_json
+
+   subroutine put(text, file)
       character(len=*, kind=c_char), intent(in) :: text
+      integer(c_int), intent(in), optional :: file   !! standard error when left out
+      integer(c_int) :: target_file
       character(len=1, kind=c_char) :: letters(200)
       integer(c_size_t) :: n
       integer :: i
 
+      target_file = standard_error
+      if (present(file)) target_file = file
       do i = 1, min(len(text), size(letters))
          letters(i) = text(i:i)
       end do
-      n = write_bytes(standard_error, letters, int(min(len(text), size(letters)), c_size_t))
+      n = write_bytes(target_file, letters, int(min(len(text), size(letters)), c_size_t))
       if (n < 0) return
    end subroutine put
 

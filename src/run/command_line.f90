@@ -31,6 +31,7 @@ module command_line
       type(definition_type), allocatable :: definitions(:)
       integer :: threads = 0                           !! 0: OMP_NUM_THREADS, else 1
       logical :: quiet = .false.
+      logical :: json = .false.                        !! for machines; quiet but for that
       logical :: explain = .false.                     !! a check: say what the deck means
       logical :: overwrite = .false.                   !! results that exist may be replaced
       character(len=:), allocatable :: restart         !! results of an earlier run to go on from
@@ -49,9 +50,10 @@ contains
             'usage: carom run DECK [-o OUT.h5] [--define NAME=VALUE]... [--threads N] [--quiet]' &
             //nl// &
             '                      [--overwrite] [--restart OLD.h5] [--memory SIZE]'//nl// &
-            '                      [--time-limit TIME]'//nl// &
+            '                      [--time-limit TIME] [--json]'//nl// &
             '       carom check DECK [--explain] [--define NAME=VALUE]... [--memory SIZE]' &
             //nl// &
+            '                      [--json]'//nl// &
             '       carom help [CARD]'//nl// &
             '       carom --version | --help'//nl//nl// &
             '  run      computes the deck; writes OUT.h5, OUT.log and OUT.sta'//nl// &
@@ -63,6 +65,7 @@ contains
             '  --define overrides a *PARAMETER of the deck'//nl// &
             '  --threads threads to work with (default: OMP_NUM_THREADS, else 1)'//nl// &
             '  --quiet  no progress on the terminal'//nl// &
+            '  --json   run and check print one JSON object, nothing else'//nl// &
             '  --overwrite  replaces results that exist'//nl// &
             '  --restart  goes on from the state saved in OLD.h5, there or in OUT.h5'//nl// &
             '  --memory  what the run may take, as 500M or 12G (default: the machine''s)'//nl// &
@@ -80,6 +83,10 @@ contains
       allocate (command%definitions(0), stat=status)
       call check_allocation(status)
       if (command_argument_count() == 0) return
+      do i = 2, command_argument_count()
+         if (argument(i) == '--json') command%json = .true.
+      end do
+      command%quiet = command%json
       select case (argument(1))
       case ('run')
          command%kind = command_run
@@ -135,6 +142,8 @@ contains
          call read_option(command, word, argument(i), error)
       case ('--quiet')
          command%quiet = .true.
+      case ('--json')
+         command%json = .true.
       case ('--overwrite')
          command%overwrite = .true.
       case ('--explain')
@@ -240,7 +249,8 @@ contains
       integer :: dot
 
       if (command%kind /= command_run .and. command%kind /= command_check) then
-         if (allocated(command%deck)) call usage_error(error, 'nothing may follow here')
+         if (allocated(command%deck) .or. command%json) call usage_error(error, &
+               'nothing may follow here')
          return
       end if
       if (.not. allocated(command%deck)) then

@@ -4,7 +4,7 @@ module course_increments
    use kinds, only: wp
    use errors, only: error_type, new_error, status_numerical, status_interrupted
    use state_archive, only: archive_type
-   use text, only: to_text
+   use text, only: to_text, plural
    use steps, only: step_type
    use run_log, only: log_type, say
    use stop_request, only: watch_type
@@ -25,7 +25,7 @@ contains
    subroutine take_next(simulation, course, log, watch, taken, error)
       type(simulation_type), intent(inout) :: simulation
       type(course_type), intent(inout) :: course
-      type(log_type), intent(in) :: log
+      type(log_type), intent(inout) :: log
       type(watch_type), intent(inout) :: watch   !! over rehearsals
       logical, intent(out) :: taken
       type(error_type), allocatable, intent(out) :: error
@@ -82,7 +82,7 @@ contains
    subroutine take_to_tolerance(simulation, course, log, watch, taken, error)
       type(simulation_type), intent(inout) :: simulation
       type(course_type), intent(inout) :: course
-      type(log_type), intent(in) :: log
+      type(log_type), intent(inout) :: log
       type(watch_type), intent(inout) :: watch
       logical, intent(out) :: taken
       type(error_type), allocatable, intent(out) :: error
@@ -107,7 +107,7 @@ contains
    subroutine start_to_tolerance(simulation, course, log, watch, error)
       type(simulation_type), intent(inout) :: simulation
       type(course_type), intent(inout) :: course
-      type(log_type), intent(in) :: log
+      type(log_type), intent(inout) :: log
       type(watch_type), intent(inout) :: watch
       type(error_type), allocatable, intent(out) :: error
       type(archive_type) :: before
@@ -154,12 +154,12 @@ contains
    subroutine report_course(simulation, course, log)
       type(simulation_type), intent(in) :: simulation
       type(course_type), intent(in) :: course
-      type(log_type), intent(in) :: log
+      type(log_type), intent(inout) :: log
 
       if (simulation%model%steps(course%step)%direct) return
       if (simulation%scene%system%static) then
-         call say(log, 'step '//to_text(course%step)//': '//to_text(course%increment) &
-               //' automatic increments, '//to_text(course%control%n_cut)//' tried in vain')
+         call say(log, 'step '//to_text(course%step)//': '//plural(course%increment, &
+               'automatic increment')//', '//to_text(course%control%n_cut)//' tried in vain')
       else
          call report_tolerance(course%plan, course%twins, course%step, log)
       end if

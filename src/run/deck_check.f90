@@ -17,7 +17,9 @@ module deck_check
    use scene_advice, only: advice_list_type, advise_step, advise_pairs
    use feature_report, only: report_features, report_advice
    use run_report, only: report_model, report_step, report_notes
-   use run_log, only: log_type, say
+   use run_log, only: log_type, say, remark
+   use json_text, only: json_type
+   use check_json, only: step_facts_type, facts_of, describe_check, put_lines
    use deck_doubts, only: doubt_deck
    use step_doubts, only: doubt_step, may_be_too_long
    use longest_period, only: find_longest_period
@@ -42,14 +44,16 @@ module deck_check
       type(feature_list_type) :: features        !! of the dearest step
       type(advice_list_type) :: advice
       logical, allocatable :: may_meet(:)        !! by contact pairs
+      type(step_facts_type), allocatable :: steps(:)
       type(lines_type) :: explanation
    end type preview_type
 
 contains
 
    !> Reads the deck, builds every step once without running, and says what a run would do.
-   subroutine check_deck(command, error)
+   subroutine check_deck(command, report, error)
       type(command_type), intent(in) :: command
+      type(json_type), intent(inout) :: report   !! open; gets what is known of the deck
       type(error_type), allocatable, intent(out) :: error
       type(simulation_type) :: simulation
       type(preview_type) :: preview
@@ -58,16 +62,19 @@ contains
       call read_model(simulation%model, command, preview, error)
       if (allocated(error)) return
       preview%explanation%wanted = command%explain
-      log%terminal = .not. command%explain
+      log%terminal = .not. (command%explain .or. command%json)
       call prepare(simulation, log, .true., preview, error)
       if (allocated(error)) return
-      if (command%explain) call report_explanation(preview, simulation)
+      if (command%explain .and. .not. command%json) call report_explanation(preview, simulation)
       call say(log, 'memory: '//memory_text(preview%memory))
       call report_limit(preview, simulation, log, error)
       if (allocated(error)) return
       call report_preview(preview, simulation, .true., log)
       call report_notes(simulation, log)
       call say(log, 'the deck is sound; --explain says what it means')
+      if (command%json) call describe_check(report, simulation, preview%steps, preview%memory, &
+            preview%limit%bytes, preview%features, preview%advice, log%notices)
+      if (command%json .and. command%explain) call put_lines(report, preview%explanation)
       call simulation%scene%system%matrices%release()
    end subroutine check_deck
 
@@ -90,7 +97,7 @@ contains
    subroutine report_limit(preview, simulation, log, error)
       type(preview_type), intent(in) :: preview
       type(simulation_type), intent(in) :: simulation
-      type(log_type), intent(in) :: log
+      type(log_type), intent(inout) :: log
       type(error_type), allocatable, intent(out) :: error
       type(error_type), allocatable :: refusal
 
@@ -101,7 +108,7 @@ contains
       if (preview%limit%by_user) then
          call move_alloc(refusal, error)
       else
-         call say(log, 'warning: it would be refused here: '//refusal%message)
+         call remark(log, 'warning: it would be refused here: '//refusal%message)
       end if
    end subroutine report_limit
 
@@ -158,9 +165,11 @@ contains
       type(preview_type), intent(inout) :: preview
       type(error_type), allocatable, intent(out) :: error
       type(plan_type) :: plan
-      integer :: i
+      integer :: i, status
 
       call new_plan(plan, simulation%model)
+      allocate (preview%steps(size(simulation%model%steps)), stat=status)
+      call check_allocation(status)
       do i = 1, size(simulation%model%steps)
          call begin_step(simulation, i, error)
          if (allocated(error)) return
@@ -180,6 +189,7 @@ contains
       type(preview_type), intent(inout) :: preview
       type(feature_list_type) :: features
 
+      preview%steps(i_step) = facts_of(simulation)
       call add_step_memory(preview%memory, simulation, simulation%model%steps(i_step))
       call list_features(features, simulation, i_step, plan)
       call advise_step(preview%advice, simulation, i_step, features, &

@@ -10,7 +10,7 @@ module frequency_run
    use result_file, only: result_file_type, write_system
    use mode_recorder, only: record_modes
    use program_version, only: version_text
-   use run_log, only: log_type, say
+   use run_log, only: log_type, say, remark
    use scene_setup, only: simulation_type, begin_step
    use run_report, only: report_step
    implicit none
@@ -25,7 +25,7 @@ contains
       type(simulation_type), intent(inout) :: simulation
       integer, intent(in) :: i_step
       type(result_file_type), intent(inout) :: results
-      type(log_type), intent(in) :: log
+      type(log_type), intent(inout) :: log
       type(error_type), allocatable, intent(out) :: error
       type(modes_type) :: modes
       logical, allocatable :: implicit_equation(:)
@@ -64,11 +64,11 @@ contains
    subroutine report_modes(modes, n_wanted, log)
       type(modes_type), intent(in) :: modes
       integer, intent(in) :: n_wanted
-      type(log_type), intent(in) :: log
+      type(log_type), intent(inout) :: log
       character(len=80) :: line
       integer :: i
 
-      if (modes%n < n_wanted) call say(log, 'note: '//to_text(n_wanted) &
+      if (modes%n < n_wanted) call remark(log, to_text(n_wanted) &
             //' modes were asked for, the model has '//to_text(modes%n))
       call say(log, '  '//plural(modes%n, 'mode')//' by '//trim(merge('condensation    ', &
             'Lanczos'' method ', modes%condensed))//', shift '//to_text(modes%shift, 3) &

@@ -6,10 +6,11 @@ module increment_end
    use cost_account, only: next_increment
    use steps, only: step_type
    use energy_ledger, only: close_increment
-   use impact_scene, only: scene_type
+   use impact_scene, only: scene_type, event_impact
    use result_file, only: record_increment
    use run_log, only: log_type, note, write_status, has_line
-   use progress, only: show_progress
+   use progress, only: place_type, show_progress
+   use increment_notices, only: notice_trouble
    use stop_request, only: keep_watch, look_for_stop, stop_run
    use scene_setup, only: simulation_type
    use increment_checks, only: check_finite, check_energies, check_interpolation, check_balance, &
@@ -20,7 +21,7 @@ module increment_end
    implicit none
    private
 
-   public :: finish_increment, stop_if_asked, count_events
+   public :: finish_increment, stop_if_asked, count_events, place_of
 
 contains
 
@@ -95,9 +96,29 @@ contains
             call note_residuals(scene, course%increment, output%log)
          end if
          output%iterations = scene%n_iterations
-         call show_progress(output%progress, motion%motion%t/output%end_time, motion%motion%t)
+         if (output%watch%pace%fresh .and. output%log%progress%shown) then
+            call show_progress(output%log%progress, output%watch%pace%now, &
+                  place_of(simulation, course))
+         end if
+         call notice_trouble(output%seen, simulation, course, output%log)
       end associate
    end subroutine record
+
+   !> Where the run is, for the line of progress.
+   pure function place_of(simulation, course) result(place)
+      type(simulation_type), intent(in) :: simulation
+      type(course_type), intent(in) :: course
+      type(place_type) :: place
+
+      place%step = max(1, course%step)
+      place%increment = course%increment
+      associate (duration => simulation%model%steps(place%step)%duration)
+         if (duration > 0.0_wp) place%share = course%step_time/duration
+      end associate
+      place%has_contact = simulation%scene%rows%n > 0
+      place%n_impacts = simulation%n_events(event_impact)
+      place%n_touching = simulation%touching
+   end function place_of
 
    !> What stops a run with the results of the increment written.
    subroutine check_end(simulation, course, error)
@@ -126,6 +147,7 @@ contains
          end associate
       end do
       n_touching = count(self%motion%touching .or. self%motion%lambda > 0.0_wp)
+      self%touching = n_touching
       self%most_touching = max(self%most_touching, n_touching)
       if (n_touching == 0 .or. all(self%has_met)) return
       do i = 1, self%scene%rows%n

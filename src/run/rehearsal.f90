@@ -10,7 +10,8 @@ module rehearsal
    use steps, only: step_type
    use surfaces, only: method_transformation
    use stability_limit, only: stable_frequency
-   use run_log, only: log_type, say
+   use run_log, only: log_type, say, remark
+   use progress, only: place_type, show_progress
    use stop_request, only: watch_type, keep_watch, look_for_stop, stop_run
    use scene_setup, only: simulation_type
    use increments, only: checkpoint_type, keep_state, put_back
@@ -110,7 +111,7 @@ contains
    subroutine rehearse(simulation, i_step, log, watch, plan, error)
       type(simulation_type), intent(inout) :: simulation
       integer, intent(in) :: i_step
-      type(log_type), intent(in) :: log
+      type(log_type), intent(inout) :: log
       type(watch_type), intent(inout) :: watch
       type(plan_type), intent(out) :: plan
       type(error_type), allocatable, intent(out) :: error
@@ -121,7 +122,7 @@ contains
       call keep_state(simulation, start)
       do while (.not. plan%ready)
          trial%size = plan%size
-         call try_out(simulation, i_step, watch, plan, trial, error)
+         call try_out(simulation, i_step, log, watch, plan, trial, error)
          if (allocated(error)) then
             if (error%status == status_interrupted) call put_back(simulation, start)
             return
@@ -181,9 +182,10 @@ contains
    end subroutine set_sizes
 
    !> The step with one size.
-   subroutine try_out(simulation, i_step, watch, plan, trial, error)
+   subroutine try_out(simulation, i_step, log, watch, plan, trial, error)
       type(simulation_type), intent(inout) :: simulation
       integer, intent(in) :: i_step
+      type(log_type), intent(inout) :: log
       type(watch_type), intent(inout) :: watch
       type(plan_type), intent(inout) :: plan
       type(trial_type), intent(inout) :: trial
@@ -201,6 +203,9 @@ contains
          simulation%scene%n_events = 0
          call compare_twins(twins, simulation)
          call keep_watch(watch)
+         if (watch%pace%fresh .and. log%progress%shown) call show_progress(log%progress, &
+               watch%pace%now, place_type(step=i_step, rehearsal=plan%n_rehearsals + 1, &
+               increment=twins%n, share=twins%step_time/plan%settings%duration))
          call look_for_stop(watch, asked)
          if (asked) then
             call stop_run(watch, 'in a rehearsal of step '//to_text(i_step), t, error)
@@ -305,7 +310,7 @@ contains
       type(plan_type), intent(in) :: plan
       type(twins_type), intent(in) :: twins
       integer, intent(in) :: i_step
-      type(log_type), intent(in) :: log
+      type(log_type), intent(inout) :: log
       type(trial_type) :: trial
       real(wp) :: estimate
 
@@ -319,7 +324,8 @@ contains
       call say(log, '  estimated error '//to_text(estimate, 3) &
             //' of the largest displacement, asked '//to_text(plan%asked, 3))
       if (estimate > plan%asked) then
-         call say(log, 'warning: step '//to_text(i_step)//' is probably less accurate than asked')
+         call remark(log, 'warning: step '//to_text(i_step) &
+               //' is probably less accurate than asked')
       end if
    end subroutine report_tolerance
 

@@ -22,6 +22,7 @@ module restart_start
    use output_files, only: claim_output, log_stem
    use run_log, only: open_log, continue_log, say
    use run_output, only: output_type
+   use step_tally, only: start_tally
    use scene_setup, only: simulation_type
    use course, only: course_type
    implicit none
@@ -186,6 +187,9 @@ contains
                simulation%scene, simulation%contact, error)
          call name_deck(command%definitions, simulation%model%source, output)
       end if
+      call start_tally(output%tally, size(simulation%model%steps))
+      if (self%wanted .and. .not. allocated(error)) call output%tally%pass_state(self%archive, &
+            simulation)
       if (.not. allocated(error)) call open_lines(self, command, output, error)
       if (.not. allocated(error)) return
       output%results%has_records = .false.

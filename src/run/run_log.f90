@@ -1,17 +1,20 @@
 !> The log and status files beside the result, and what the terminal shows.
 module run_log
    use, intrinsic :: iso_fortran_env, only: output_unit
-   use kinds, only: wp
+   use kinds, only: wp, int64
    use errors, only: error_type
    use state_archive, only: archive_type
+   use text, only: to_text
    use status_lines, only: read_status_lines
+   use notices, only: notice_list_type, is_warning, without_mark
+   use progress, only: progress_type
    use file_calls, only: look_at, look_at_open, is_same
    use text_file, only: text_file_type, open_text, write_line, check_text, close_text
    implicit none
    private
 
-   public :: log_type, open_log, continue_log, check_log, close_log, say, note, write_status, &
-         has_line
+   public :: log_type, open_log, continue_log, check_log, close_log, say, tell, note, remark, &
+         warn, write_status, has_line
 
    !> Where lines go. Without files (a mere check), to the terminal alone.
    type :: log_type
@@ -22,6 +25,9 @@ module run_log
       logical :: has_held = .false.         !! an increment whose status line is not written
       integer :: held_counts(4) = 0
       real(wp) :: held_times(3) = 0.0_wp
+      type(progress_type) :: progress
+      type(notice_list_type) :: notices
+      character(len=:), allocatable :: name      !! of the log, for messages
    contains
       procedure :: pass_state
    end type log_type
@@ -47,6 +53,7 @@ contains
       call open_text(self%status, stem//'.sta', .false., error)
       if (allocated(error)) return
       self%has_files = .true.
+      self%name = stem//'.log'
       call write_head(self)
    end subroutine open_log
 
@@ -81,6 +88,7 @@ contains
       call open_text(self%status, stem//'.sta', .false., error)
       if (allocated(error)) return
       self%has_files = .true.
+      self%name = stem//'.log'
       if (len(lines) == 0) then
          call write_head(self)
       else
@@ -88,7 +96,7 @@ contains
       end if
    end subroutine continue_log
 
-   !> What of the status lines is not written yet.
+   !> What of the status lines is not written yet, and the warnings so far.
    subroutine pass_state(self, archive)
       class(log_type), intent(inout) :: self
       type(archive_type), intent(inout) :: archive
@@ -99,6 +107,7 @@ contains
       call archive%pass('has_held', self%has_held)
       call archive%pass('held_counts', counts)
       call archive%pass_fixed('held_times', self%held_times)
+      call self%notices%pass_state(archive)
       call archive%leave()
       if (.not. allocated(counts)) return
       if (size(counts) == size(self%held_counts)) self%held_counts = counts
@@ -118,13 +127,51 @@ contains
       type(log_type), intent(in) :: self
       character(len=*), intent(in) :: line
 
+      call write_line(self%lines, line)
+      call tell(self, line)
+   end subroutine say
+
+   !> One line for the terminal alone, in the place of that of the progress.
+   subroutine tell(self, line)
+      type(log_type), intent(in) :: self
+      character(len=*), intent(in) :: line
       integer :: status
 
-      call write_line(self%lines, line)
       if (.not. self%terminal) return
-      write (output_unit, '(a)', iostat=status) line
-      if (status /= 0) return   ! a terminal that is gone is no reason to stop
-   end subroutine say
+      if (self%progress%drawn) then
+         write (output_unit, '(a)', iostat=status) achar(13)//achar(27)//'[K'//line
+      else
+         write (output_unit, '(a)', iostat=status) line
+      end if
+      ! a terminal that is gone is no reason to stop
+      if (status /= 0) return
+      flush (output_unit, iostat=status)
+      if (status /= 0) return
+   end subroutine tell
+
+   !> A note on the deck, or a warning if it says so, before the first increment.
+   subroutine remark(self, text)
+      type(log_type), intent(inout) :: self
+      character(len=*), intent(in) :: text
+      logical :: is_new
+
+      call self%notices%add(without_mark(text), is_warning(text), is_new)
+      call say(self, trim(merge('warning', 'note   ', is_warning(text)))//': '//without_mark(text))
+   end subroutine remark
+
+   !> A warning or note of what happens in the run: said when it comes first, then counted.
+   subroutine warn(self, text, warning, t, times)
+      type(log_type), intent(inout) :: self
+      character(len=*), intent(in) :: text
+      logical, intent(in) :: warning             !! else a note
+      real(wp), intent(in) :: t                  !! total time
+      integer(int64), intent(in) :: times        !! that it came since it was counted last
+      logical :: is_new
+
+      call self%notices%add(text, warning, is_new, t, times)
+      if (is_new) call say(self, trim(merge('warning', 'note   ', warning))//' (at t = ' &
+            //to_text(t)//'): '//text)
+   end subroutine warn
 
    !> One line for the log alone.
    subroutine note(self, line)

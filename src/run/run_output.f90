@@ -5,7 +5,8 @@ module run_output
    use cost_account, only: cost_type
    use result_file, only: result_file_type
    use run_log, only: log_type
-   use progress, only: progress_type
+   use step_tally, only: tally_type
+   use increment_notices, only: seen_type
    use publishing, only: publishing_type, is_due, publish_now, was_slow_to_start
    use stop_request, only: watch_type, start_looking
    use deck_check, only: preview_type
@@ -18,7 +19,8 @@ module run_output
    type :: output_type
       type(result_file_type) :: results
       type(log_type) :: log
-      type(progress_type) :: progress
+      type(tally_type) :: tally
+      type(seen_type) :: seen                    !! counters that warnings come from
       type(preview_type) :: preview
       type(publishing_type) :: publishing
       type(watch_type) :: watch

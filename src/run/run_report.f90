@@ -1,10 +1,9 @@
-!> What the log says of a model, its steps and a finished run.
+!> What the log says of a model and its steps.
 module run_report
    use kinds, only: wp, int64
    use display, only: displayed
    use text, only: to_text, plural
    use places, only: source_type
-   use cost_account, only: n_phases, phase_names, phase_factor, phase_solve
    use mesh, only: scheme_implicit, scheme_explicit
    use steps, only: procedure_static, procedure_dynamic, procedure_frequency
    use skyline_matrix, only: profile_entries
@@ -14,18 +13,15 @@ module run_report
          method_penalty, method_lagrange
    use transformation, only: impact_beta
    use stability_limit, only: stable_frequency
-   use impact_scene, only: event_impact, event_capture, event_release, event_contact, event_limit, &
-         scene_type
    use automatic_groups, only: partition_type
    use increment_count, only: count_increments
    use scene_setup, only: simulation_type
-   use run_log, only: log_type, say
-   use feature_report, only: percent
    use program_version, only: version_text
+   use run_log, only: log_type, say, remark
    implicit none
    private
 
-   public :: report_model, report_step, report_notes, report_summary
+   public :: report_model, report_step, report_notes, procedure_name
 
 contains
 
@@ -262,85 +258,12 @@ contains
    !> Notes on the deck and its steps.
    subroutine report_notes(simulation, log)
       type(simulation_type), intent(in) :: simulation
-      type(log_type), intent(in) :: log
+      type(log_type), intent(inout) :: log
       integer :: i
 
       do i = 1, size(simulation%remarks)
-         call say(log, 'note: '//simulation%remarks(i)%text)
+         call remark(log, simulation%remarks(i)%text)
       end do
    end subroutine report_notes
-
-   !> Counts, energies and cost of a run.
-   subroutine report_summary(simulation, log)
-      type(simulation_type), intent(in) :: simulation
-      type(log_type), intent(in) :: log
-      character(len=:), allocatable :: line
-
-      associate (n => simulation%n_events, ledger => simulation%scene%ledger)
-         call say(log, 'reached time '//to_text(simulation%motion%motion%t))
-         if (simulation%scene%rows%n > 0) call say(log, 'events: ' &
-               //to_text(n(event_impact))//' impacts, '//to_text(n(event_contact))//' overlaps, ' &
-               //to_text(n(event_capture))//' captures, '//to_text(n(event_release))//' releases')
-         if (n(event_limit) > 0) call say(log, &
-               'warning: MAX EVENTS was reached; rows captured by it: ' &
-               //to_text(n(event_limit)))
-         if (simulation%scene%rows%n > 0) call report_contact(simulation, log)
-         line = 'energy: '
-         if (ledger%time < simulation%motion%motion%t) line = 'energy at time ' &
-               //to_text(ledger%time)//': '
-         call say(log, line//'kinetic '//to_text(ledger%kinetic)//', strain ' &
-               //to_text(ledger%strain) &
-               //', damping '//to_text(ledger%damping)//', friction '//to_text(ledger%friction) &
-               //', impacts '//to_text(ledger%impact_loss) &
-               //', external work '//to_text(ledger%external_work)//', balance error ' &
-               //to_text(ledger%balance_error, 3))
-      end associate
-      call report_cost(simulation%scene, log)
-   end subroutine report_summary
-
-   !> What the result's /cost says.
-   subroutine report_cost(scene, log)
-      type(scene_type), intent(in) :: scene
-      type(log_type), intent(in) :: log
-      character(len=:), allocatable :: line
-      integer :: i
-
-      associate (cost => scene%system%cost, matrices => scene%system%matrices)
-         call say(log, 'cost: '//to_text(matrices%n_factorizations)//' factorizations in ' &
-               //to_text(cost%seconds(phase_factor), 3)//' s, '//to_text(matrices%n_solves) &
-               //' solves in '//to_text(cost%seconds(phase_solve), 3)//' s, all in ' &
-               //to_text(cost%elapsed, 3)//' s')
-         call say(log, 'cost: '//to_text(cost%increments)//' increments, ' &
-               //to_text(scene%n_iterations)//' iterations, '//to_text(cost%element_updates) &
-               //' element updates, '//to_text(scene%geometry%n_searches)//' contact searches, ' &
-               //to_text(cost%processor, 3)//' s of processor time')
-         line = ''
-         do i = 1, n_phases
-            if (i > 1) line = line//', '
-            line = line//trim(phase_names(i))//' '//percent(cost%seconds(i), cost%elapsed)
-         end do
-         call say(log, 'cost: '//line)
-      end associate
-   end subroutine report_cost
-
-   !> What contact has cost, and how often the fictitious force had to be found otherwise.
-   subroutine report_contact(simulation, log)
-      type(simulation_type), intent(in) :: simulation
-      type(log_type), intent(in) :: log
-      character(len=:), allocatable :: line
-
-      associate (scene => simulation%scene)
-         line = 'contact: at most '//plural(simulation%most_touching, 'row') &
-               //' touching at once'
-         if (size(scene%geometry%targets) > 0) line = line//'; search: ' &
-               //to_text(sum(scene%geometry%targets%n_tests)) &
-               //' tests of a node and an edge, bins built ' &
-               //to_text(sum(scene%geometry%targets%n_builds))//' times'
-         call say(log, line)
-         if (scene%n_cycles > 0) call say(log, &
-               'fictitious force: the iteration found no set of overlapping rows to stay with ' &
-               //to_text(scene%n_cycles)//' times; the complementarity problem was solved instead')
-      end associate
-   end subroutine report_contact
 
 end module run_report

@@ -49,7 +49,8 @@ module scene_setup
       integer, allocatable :: ordered_scheme(:)  !! (n_groups) at that time
       real(wp) :: critical_gamma = -1.0_wp       !! for which `critical` holds, -1 for none
       integer(int64) :: n_events(5) = 0          !! by event_ kinds, over the whole run
-      integer :: most_touching = 0               !! rows in contact at once
+      integer :: touching = 0                    !! rows in contact now
+      integer :: most_touching = 0               !! at once so far
       logical, allocatable :: has_met(:)         !! by contact pairs
    end type simulation_type
 

@@ -10,20 +10,25 @@ module simulation
    use result_file, only: close_results
    use command_line, only: command_type
    use publishing, only: start_publishing
-   use run_log, only: log_type, close_log, say
+   use run_log, only: log_type, close_log, say, note
    use stop_request, only: start_watch, remove_stop_files
    use progress, only: start_progress, end_progress
+   use step_tally, only: count_up
+   use run_summary, only: report_summary
+   use json_text, only: json_type
+   use run_json, only: describe_run
    use scene_setup, only: simulation_type, initial_motion
    use frequency_run, only: run_frequency_step
    use scene_advice, only: advice_list_type, advise_end
    use feature_report, only: report_advice
    use deck_check, only: read_model, prepare, report_preview
-   use run_report, only: report_model, report_notes, report_summary
+   use run_report, only: report_model, report_notes
    use course, only: course_type, begin_course
    use run_output, only: output_type
    use run_state, only: restore_state
    use state_keeping, only: keep_before_step, keep_at_end, keep_if_interrupted
    use restart_start, only: restart_type, read_restart, is_finished, open_outputs, begin_again
+   use increment_end, only: place_of
    use time_loop, only: run_step
    implicit none
    private
@@ -36,8 +41,9 @@ module simulation
 contains
 
    !> A whole run. Files are made only after the deck has been found sound.
-   subroutine run_deck(command, error)
+   subroutine run_deck(command, report, error)
       type(command_type), intent(in) :: command
+      type(json_type), intent(inout) :: report   !! open; gets what is known of the run
       type(error_type), allocatable, intent(out) :: error
       type(simulation_type) :: simulation
       type(output_type) :: output
@@ -49,6 +55,7 @@ contains
 
       associate (cost => simulation%scene%system%cost)
          call start_clock(cost)
+         output%log%terminal = .not. command%json
          call catch_signals()
          call ignore_signals([broken_pipe, file_too_large])
          call start_publishing(output%publishing)
@@ -87,12 +94,13 @@ contains
       call keep_if_interrupted(simulation, course, output, error)
       call tell_how_to_go_on(command, error)
       call remove_stop_files(output%watch)
-      call end_progress(output%progress)
+      call end_progress(output%log%progress, .not. allocated(error), place_of(simulation, course))
       call close_results(output%results, simulation%scene, close_error)
       call merge_errors(error, close_error, output%results%file)
-      call report_summary(simulation, output%log)
+      call report_summary(simulation, output%tally, output%preview%memory, output%log)
       if (.not. allocated(error)) call advise_end(lessons, simulation)
       call report_advice(lessons, output%log)
+      if (command%json) call describe_run(report, simulation, output, lessons)
       call end_log(output%log, error)
       call simulation%scene%system%matrices%release()
    end subroutine run_deck
@@ -142,7 +150,7 @@ contains
    end subroutine end_log
 
    !> The last line of the log: how the run ended; what a message says beyond its first line, as the
-   !> cure, goes before.
+   !> cure, goes before. The terminal gets the message from the main program.
    subroutine report_end(log, error)
       type(log_type), intent(in) :: log
       type(error_type), allocatable, intent(in) :: error
@@ -153,8 +161,8 @@ contains
          return
       end if
       cut = index(error%message//new_line('a'), new_line('a'))
-      if (cut < len(error%message)) call say(log, error%message(cut + 1:))
-      call say(log, 'stopped: '//error%message(:cut - 1))
+      if (cut < len(error%message)) call note(log, error%message(cut + 1:))
+      call note(log, 'stopped: '//error%message(:cut - 1))
    end subroutine report_end
 
    !> Back to the start of the run after the rehearsal of its steps.
@@ -184,7 +192,7 @@ contains
          call begin_again(restart, simulation, course, output, error)
          if (allocated(error)) return
       end if
-      call start_progress(output%progress, command%quiet)
+      call start_progress(output%log%progress, .not. output%log%terminal, simulation%model%steps)
       do i = max(1, course%step), size(simulation%model%steps)
          if (simulation%model%steps(i)%procedure == procedure_frequency) then
             call keep_before_step(simulation, course, output, error)
@@ -196,6 +204,7 @@ contains
          else
             call run_step(simulation, course, output, error)
          end if
+         call count_up(output%tally, simulation, i)
          if (allocated(error)) return
       end do
       call keep_at_end(simulation, course, output, error)

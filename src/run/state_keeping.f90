@@ -15,6 +15,7 @@ module state_keeping
    use course, only: course_type
    use run_state, only: collect_state
    use run_output, only: output_type, publish_now_and_then
+   use step_tally, only: count_up
    implicit none
    private
 
@@ -43,6 +44,8 @@ contains
             call extents%pass_state(archive)
             call output%results%gaps%pass_state(archive)
             call output%log%pass_state(archive)
+            call count_up(output%tally, simulation, course%step)
+            call output%tally%pass_state(archive, simulation)
             call cost%pass_times(archive)
             call write_state(output%results%restart, output%results%file, archive, error)
          end if

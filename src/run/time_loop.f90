@@ -14,6 +14,8 @@ module time_loop
    use course, only: course_type
    use course_increments, only: take_next, report_course
    use run_output, only: output_type, publish_after_start
+   use step_tally, only: note_start
+   use increment_notices, only: look_at_counters
    use increment_end, only: finish_increment, stop_if_asked
    implicit none
    private
@@ -36,6 +38,7 @@ contains
       else
          output%iterations = simulation%scene%n_iterations
       end if
+      call look_at_counters(output%seen, simulation, course)
       call start_looking(output%watch)
       call stop_if_asked(simulation, course, output, error)
       if (allocated(error)) return
@@ -61,6 +64,7 @@ contains
       call start_step(simulation, course%step, error)
       call leave(simulation%scene%system%cost, outer)
       if (allocated(error)) return
+      if (course%step == 1) call note_start(output%tally, simulation%scene%ledger)
       call report_step(simulation, course%step, output%log)
       if (course%step == 1) call record_start(simulation, output, error)
       course%entered = .not. allocated(error)

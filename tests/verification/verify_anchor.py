@@ -23,9 +23,8 @@ def error_of(run, exact):
 
 
 def counts(run):
-    """Factorizations and solutions of a run, by its log."""
-    log = run.path.with_suffix('.log').read_text()
-    return [int(n) for n in re.search(r'cost: (\d+) factorizations.*?, (\d+) solves', log).groups()]
+    """Factorizations and solutions of a run."""
+    return [int(run[f'cost/{name}'][0]) for name in ('factorizations', 'solves')]
 
 
 def change(run):

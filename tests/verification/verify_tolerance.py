@@ -56,7 +56,7 @@ def said(run):
     text = log_of(run)
     estimates = [float(x) for x in re.findall(r'estimated error (\S+) of the largest', text)]
     counts = [int(x) for x in re.findall(r'(\d+) automatic increment', text)]
-    factors, solves = re.search(r'cost: (\d+) factorizations .*?, (\d+) solves', text).groups()
+    factors, solves = (run[f'cost/{name}'][0] for name in ('factorizations', 'solves'))
     return estimates, counts, int(factors), int(solves), 'warning: step' in text
 
 
