@@ -5,7 +5,6 @@ import shutil
 import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 
 
@@ -99,11 +98,3 @@ def _become(script, arguments, where, printed, environment, first_path):
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(status)
-
-
-def wait_for_file(path, seconds=10):
-    """True as soon as the file is there."""
-    end = time.monotonic() + seconds
-    while time.monotonic() < end and not path.exists():
-        time.sleep(0.02)
-    return path.exists()
