@@ -1,5 +1,4 @@
-!> From the model to a scene that can be computed, step by step, with every check that can be made
-!> before the first increment.
+!> From the model to a scene that can be computed, step by step, with all checks before increments.
 module scene_setup
    use kinds, only: wp, int64
    use errors, only: error_type

@@ -49,8 +49,6 @@ contains
       type(output_type) :: output
       type(restart_type) :: restart
       type(course_type) :: course
-      type(advice_list_type) :: lessons
-      type(error_type), allocatable :: close_error
       integer :: outer
 
       associate (cost => simulation%scene%system%cost)
@@ -91,6 +89,20 @@ contains
          return
       end if
       call run_steps(simulation, command, restart, course, output, error)
+      call finish_run(simulation, command, course, output, report, error)
+   end subroutine run_deck
+
+   !> What follows the last increment, however it ended: the state kept, files closed, the summary.
+   subroutine finish_run(simulation, command, course, output, report, error)
+      type(simulation_type), intent(inout) :: simulation
+      type(command_type), intent(in) :: command
+      type(course_type), intent(inout) :: course
+      type(output_type), intent(inout) :: output
+      type(json_type), intent(inout) :: report
+      type(error_type), allocatable, intent(inout) :: error
+      type(advice_list_type) :: lessons
+      type(error_type), allocatable :: close_error
+
       call keep_if_interrupted(simulation, course, output, error)
       call tell_how_to_go_on(command, error)
       call remove_stop_files(output%watch)
@@ -103,7 +115,7 @@ contains
       if (command%json) call describe_run(report, simulation, output, lessons)
       call end_log(output%log, error)
       call simulation%scene%system%matrices%release()
-   end subroutine run_deck
+   end subroutine finish_run
 
    !> What stopped the run, and what became of its results. A file that could not be written is told
    !> in the words of its closing, which knows how that ended.
