@@ -43,6 +43,7 @@ class Job:
         self.deck, self.result = Path(deck), Path(result)
         self.log = self.result.with_suffix('.log')
         self.part = Path(f'{result}.part')
+        self.status = None
         self.began = time.perf_counter()
         self.process = subprocess.Popen(
             [PROGRAM, 'run', str(deck), '-o', str(result), '--quiet', *options], text=True,
@@ -69,6 +70,8 @@ class Job:
 
     def end(self):
         """Waits for the end; from here on there are a status, an output and times."""
+        if self.status is not None:
+            return self
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         self.output, self.errors = self.process.communicate(timeout=300)
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
