@@ -11,6 +11,9 @@ module complementarity
 
    !> Residuals below this part of the problem's size count as zero.
    real(wp), parameter :: relative_tolerance = 1.0e-12_wp
+   !> Residuals as small as this are nothing: their answers underflow, and rows would enter and leave
+   !> for ever.
+   real(wp), parameter :: least_residual = tiny(1.0_wp)/epsilon(1.0_wp)
    !> A pivot below this part of its diagonal entry means that rows depend on each other.
    real(wp), parameter :: pivot_tolerance = 1.0e-14_wp
    !> Residuals below this part of the right-hand side fulfil dependent equations.
@@ -37,7 +40,7 @@ contains
       x = 0.0_wp
       solved = .true.
       active = .false.
-      threshold = relative_tolerance*max(maxval(abs(q)), tiny(1.0_wp))
+      threshold = max(relative_tolerance*maxval(abs(q)), least_residual)
       do sweep = 1, 10*size(q) + 10
          residual = matmul(w, x) + q
          if (.not. any(residual < -threshold .and. .not. active)) return
@@ -68,7 +71,7 @@ contains
       all_rows = [(i, i=1, size(q))]
       active = .true.
       fewest = size(q) + 1
-      threshold = relative_tolerance*max(maxval(abs(q)), tiny(1.0_wp))
+      threshold = max(relative_tolerance*maxval(abs(q)), least_residual)
       do i = 1, max_exchanges
          call solve_rows_held(w, q, pack(all_rows, active), x, solved)
          if (.not. solved) return
