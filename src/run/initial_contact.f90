@@ -97,7 +97,7 @@ contains
 
       do p = 1, size(model%pairs)
          if (.not. model%pairs(p)%adjust .or. model%pairs(p)%rigid_target == 0) cycle
-         if (.not. lies_behind(model, p, model%nodes%x(:, :model%nodes%n) + u)) cycle
+         if (.not. lies_behind(model, p, model%nodes%x(:, :model%nodes%n) + u, .false.)) cycle
          call fail_at(error, model%source, model%pairs(p)%place, 'ADJUST: ' &
                //trim(model%surfaces(model%pairs(p)%contactor)%name)//' is on the wrong side of ' &
                //trim(model%rigid_surfaces(model%pairs(p)%rigid_target)%name), &

@@ -134,7 +134,7 @@ contains
       logical :: behind
 
       behind = .false.
-      if (pair > 0) behind = lies_behind(model, pair, x)
+      if (pair > 0) behind = lies_behind(model, pair, x, .true.)
       if (pair == 0) then
          cure = 'give the gap a larger clearance, or an initial displacement without overlap'
       else if (behind) then

@@ -14,10 +14,11 @@ module wall_side
 contains
 
    !> Whether all nodes of the bodies that a pair's slave belongs to are behind its rigid surface.
-   function lies_behind(model, pair, x) result(behind)
+   function lies_behind(model, pair, x, points) result(behind)
       type(model_type), intent(in) :: model
       integer, intent(in) :: pair                !! index of the pair
       real(wp), intent(in) :: x(:, :)            !! (3, n_nodes) at the start
+      logical, intent(in) :: points              !! nodes of no body count too, which have no inside
       logical :: behind
       type(body_list_type) :: bodies
       logical :: meant(model%nodes%n)
@@ -34,6 +35,7 @@ contains
          of_slave(1 + bodies%of_node(nodes)) = .true.
       end associate
       of_slave(1) = .false.
+      if (.not. (points .or. any(of_slave))) return
       meant = meant .or. of_slave(1 + bodies%of_node)
       associate (rigid => model%rigid_surfaces(model%pairs(pair)%rigid_target))
          do i = 1, model%nodes%n

@@ -138,7 +138,8 @@ def run_json(checks, *words, status=0):
     checks.true(done.returncode == status, f'--json {words[0]}: status {done.returncode} is {status}')
     found = json.loads(done.stdout, parse_constant=lambda word: sys.exit(f'FAILED: {word} in JSON'))
     checks.true(found['status'] == status, f'--json {words[0]}: says status {found["status"]}')
-    checks.true(bool(done.stderr) == bool(status), '--json: the error stands on stderr too')
+    checks.true(bool(done.stderr) == bool(status),
+                f'--json {words[0]}: the error stands on stderr too: {done.stderr[:300]!r}')
     return found
 
 
