@@ -11,8 +11,8 @@ module complementarity
 
    !> Residuals below this part of the problem's size count as zero.
    real(wp), parameter :: relative_tolerance = 1.0e-12_wp
-   !> Residuals as small as this are nothing: their answers underflow, and rows would enter and leave
-   !> for ever.
+   !> Residuals as small as this are nothing: their answers underflow, and rows would enter and
+   !> leave for ever.
    real(wp), parameter :: least_residual = tiny(1.0_wp)/epsilon(1.0_wp)
    !> A pivot below this part of its diagonal entry means that rows depend on each other.
    real(wp), parameter :: pivot_tolerance = 1.0e-14_wp
