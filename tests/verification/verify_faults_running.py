@@ -77,7 +77,7 @@ def check_end(checks):
     said(checks, run.finish(), 3, ["'deck.h5'", "complete in 'deck.h5.part'"],
          'a directory in place of the results at the end')
     # a slow run meets the directory when it publishes in mid-run
-    reached = float(re.search(r'^reached time (\S+)', (place.folder / 'deck.log').read_text(),
+    reached = float(re.search(r'^summary of the run up to time (\S+)', (place.folder / 'deck.log').read_text(),
                               re.MULTILINE).group(1))
     rows = rows_of(place.folder / 'deck.h5.part')[0]
     checks.true(rows > 1 and abs(rows - 1 - reached/4e-4) <= 1,

@@ -97,7 +97,8 @@ def check_early_stages(checks, deck):
     """Reading a deck and building its model are refused before they are begun."""
     status, _, text = carom('run', deck, '--memory', '6M')
     checks.true(status == STATUS_MEMORY and 'error: to read ' in text, 'reading the deck is refused')
-    status, _, text = carom('run', deck, '--memory', '20M')
+    enough = float(re.search(r' takes ([\d.]+) MB', text)[1])
+    status, _, text = carom('run', deck, '--memory', f'{1.1 * enough:.1f}M')
     checks.true(status == STATUS_MEMORY and 'error: to build a model of 25921 nodes takes' in text,
                 'building the model is refused')
 
