@@ -50,6 +50,7 @@ class Mutant:
         folder.mkdir(parents=True, exist_ok=True)
         files = {**self.deck.files, "deck.inp": self.deck.text()}
         for name, text in files.items():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
             (folder / name).write_bytes(text.encode("latin-1", "replace"))
 
 
