@@ -142,7 +142,10 @@ contains
       if (start + length - 1 <= len(string)) then
          code = iand(first, 2**(7 - length) - 1)
          do i = start + 1, start + length - 1
-            if (.not. continues(string(i:i))) code = -2*65536
+            if (.not. continues(string(i:i))) then
+               code = -1
+               exit
+            end if
             code = 64*code + iand(iachar(string(i:i)), 63)
          end do
          if (code < least(length) .or. code > 1114111) code = -1

@@ -118,9 +118,11 @@ contains
       call make_space(dims, space, status(1))
       call link_property(links, status(2))
       call h5dcreate_f(file, path, storage%in_file, space, dataset, status(3), lcpl_id=links)
-      call describe(dataset, description, status(8))
-      if (product(dims) > 0) call h5dwrite_f(dataset, storage%in_memory, address, status(4))
-      call h5dclose_f(dataset, status(5))
+      if (status(3) >= 0) then
+         call describe(dataset, description, status(8))
+         if (product(dims) > 0) call h5dwrite_f(dataset, storage%in_memory, address, status(4))
+         call h5dclose_f(dataset, status(5))
+      end if
       call h5pclose_f(links, status(6))
       call h5sclose_f(space, status(7))
       failed = any(status < 0)
@@ -145,8 +147,10 @@ contains
       call h5aexists_f(owner, name, exists, status(2))
       if (exists) then
          call h5aopen_f(owner, name, attribute, status(3))
-         call h5awrite_f(attribute, storage%in_memory, address, status(4))
-         call h5aclose_f(attribute, status(5))
+         if (status(3) >= 0) then
+            call h5awrite_f(attribute, storage%in_memory, address, status(4))
+            call h5aclose_f(attribute, status(5))
+         end if
       else
          call make_attribute(owner, name, storage, dims, address, status(3))
       end if
@@ -164,11 +168,14 @@ contains
       integer(hid_t) :: space, attribute
       integer :: all_status(5)
 
+      all_status = 0
       call make_space(dims, space, all_status(1))
       call h5acreate_f(owner, name, storage%in_file, space, attribute, all_status(2))
+      if (all_status(2) >= 0) then
+         call h5awrite_f(attribute, storage%in_memory, address, all_status(4))
+         call h5aclose_f(attribute, all_status(5))
+      end if
       call h5sclose_f(space, all_status(3))
-      call h5awrite_f(attribute, storage%in_memory, address, all_status(4))
-      call h5aclose_f(attribute, all_status(5))
       status = minval(all_status)
    end subroutine make_attribute
 
@@ -219,8 +226,10 @@ contains
       call link_property(links, status(4))
       call h5dcreate_f(file, path, storage%in_file, space, dataset, status(5), &
             dcpl_id=properties, lcpl_id=links)
-      call describe(dataset, description, status(12))
-      call h5dclose_f(dataset, status(6))
+      if (status(5) >= 0) then
+         call describe(dataset, description, status(12))
+         call h5dclose_f(dataset, status(6))
+      end if
       call h5pclose_f(links, status(7))
       call h5pclose_f(properties, status(8))
       call h5sclose_f(space, status(9))

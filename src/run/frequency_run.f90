@@ -2,7 +2,7 @@
 module frequency_run
    use kinds, only: wp
    use cost_account, only: enter, leave, phase_factor
-   use errors, only: error_type
+   use errors, only: error_type, status_numerical
    use text, only: to_text, plural
    use places, only: fail_at
    use eigen_analysis, only: modes_type, find_modes
@@ -52,6 +52,7 @@ contains
             call fail_at(error, simulation%model%source, step%procedure_place, &
                   'there are no modes: nothing that can move has mass', &
                   'give the materials a density, or add MASS elements')
+            error%status = status_numerical    ! found by computing: the run has begun
             return
          end if
          call report_modes(modes, step%n_modes, log)

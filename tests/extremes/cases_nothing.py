@@ -99,7 +99,7 @@ EMPTY = [
     without_equations('single_node_static', '*NODE\n1, 0, 0\n' + step(STATIC, (0.1, 1)) + '\n'),
     without_equations('mass_alone', Points([1.0]).deck(TIME)),
     refused('no_modes', one().add(FIXED).deck('*STEP\n*FREQUENCY\n1\n*END STEP'),
-            'there are no modes')]
+            'there are no modes', status=4)]
 
 LITTLE = [
     moved('free_mass', Points([1.0]).start({}, {1: 1.0}).deck(TIME), 1.0, 1.0),

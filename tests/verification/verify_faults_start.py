@@ -97,12 +97,12 @@ def check_existing(checks):
     old = place.read()
     (place.folder / 'deck.inp').write_text(MASSLESS)
     run = place.run('--overwrite')
-    said(checks, run, 2, ['there are no modes', "'deck.h5' is still that of an earlier run"],
+    said(checks, run, 4, ['there are no modes', "'deck.h5' is still that of an earlier run"],
          '--overwrite and a stop before the first record')
     checks.true(place.read() == old, 'a stop before the first record: the results stay')
     (place.folder / 'deck.h5').unlink()
     run = place.run()
-    said(checks, run, 2, ['there are no modes', 'no results were saved'], 'a stop before the first record')
+    said(checks, run, 4, ['there are no modes', 'no results were saved'], 'a stop before the first record')
     checks.true(place.names() == ['deck.inp', 'deck.log', 'deck.sta'],
                 f'a stop before the first record: {place.names()}')
     (place.folder / 'deck.inp').write_text(SDOF)
