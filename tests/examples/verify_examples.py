@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / 'verification'))
-from carom_case import Checks, run_deck
+from carom_case import INPUT, Checks, run_deck
 
 CABLE = """*HEADING
 A mass thrown against its cable, and away from it
@@ -66,38 +66,9 @@ S, E
 *ENERGY PRINT
 *END STEP
 """
-IMPULSE = """*HEADING
-A mass on a spring that hits a wall, as in input/sdof
-*NODE
-1, 0, 0
-*ELEMENT, TYPE=MASS, ELSET=mass
-1, 1
-*ELEMENT, TYPE=SPRING1, ELSET=spring
-2, 1
-*MASS, ELSET=mass
-1
-*SPRING, ELSET=spring
-1
-1
-*SURFACE, NAME=body, TYPE=NODE
-1
-*RIGID SURFACE, NAME=wall, TYPE=PLANE
--0.5, 0, 0
-1, 0, 0
-*SURFACE INTERACTION, NAME=hit
-*IMPACT, METHOD=IMPULSE, {word}
-*CONTACT PAIR, INTERACTION=hit
-body, wall
-*INITIAL CONDITIONS, TYPE=DISPLACEMENT
-1, 1, 1
-*STEP
-*DYNAMIC, DIRECT
-{dt}, 3
-*NODE PRINT
-U, V
-*ENERGY PRINT
-*END STEP
-"""
+IMPULSE = (INPUT / 'sdof/sdof.inp').read_text().replace(
+    'METHOD=TRANSFORMATION, RESTITUTION=<e>, BETA=1/6', 'METHOD=IMPULSE, RESTITUTION=<e>').replace(
+    'end = 20', 'end = 3')
 
 
 def check_cable(checks):
@@ -138,13 +109,13 @@ def check_impulse(checks):
     shift = 3 - 4 * np.pi / 3
     errors = []
     for dt in (0.004, 0.001):
-        run = run_deck(IMPULSE.format(word='RESTITUTION=1', dt=dt))
+        run = run_deck(IMPULSE, dt=dt)
         errors.append(abs(run['history/node_1/U1'][-1] - np.cos(shift)))
         checks.at_most(errors[-1], 3 * dt, f'impulse, h = {dt}: displacement error at t = 3')
         checks.true(len(run.events()['time']) == 1, f'impulse, h = {dt}: one impact')
         checks.at_most(np.max(np.abs(run['energy/balance_error'])), 1e-10,
                        f'impulse, h = {dt}: balance error')
-    run = run_deck(IMPULSE.format(word='RETURN=0.3', dt=0.01), expect_status=2)
+    run = run_deck(IMPULSE.replace('RESTITUTION=<e>', 'RETURN=0.3'), expect_status=2)
     checks.true('RETURN means nothing with METHOD=IMPULSE' in run.text, 'impulse: RETURN is refused')
 
 
