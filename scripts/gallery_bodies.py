@@ -6,7 +6,7 @@ from contact_solutions import (
 )
 from exact_solutions import bar_contact_force
 from gallery_style import (
-    BLACK, BLUE, EXACT, GREEN, ORANGE, PURPLE, SIGNED, SPEED, STRESS, bar, body, figure,
+    BLACK, BLUE, EXACT, GREEN, ORANGE, PURPLE, SIGNED, SPEED, STRESS, WALL, bar, body, figure,
     ground, halves, key_below, lines_of, mosaic, nearest, note, window,
 )
 from plot_contact import surfaces
@@ -110,7 +110,7 @@ def draw_strip(runs):
             x, [-row - 0.35, -row + 0.35], np.tile(value[line] * 1000, (2, 1)), shading="gouraud",
             cmap=SPEED, vmin=-10, vmax=10)
         strip.text(1.02, -row, f"t = {mesh.times[frame]:.1f}", va="center", fontsize=13.5)
-    strip.axvspan(-0.03, -0.0001, facecolor="0.87", edgecolor="0.6", hatch="//", lw=0)
+    strip.axvspan(-0.03, -0.0001, **WALL)
     strip.set(xlim=(-0.03, 1.16), ylim=(-3.6, 0.6), yticks=[])
     strip.set_xlabel("x, the wall at 0")
     strip.spines["left"].set_visible(False)
@@ -141,7 +141,7 @@ def draw_elastic_strip(runs):
     painted = body(axes["mesh"], mesh, frame, "V1", (-10, 0), 1.0, SPEED, 0.12)
     place = mesh.place(frame, 1.0)
     start = place[:, 0].min()
-    axes["mesh"].axvspan(start - 0.4, start, facecolor="0.87", edgecolor="0.6", hatch="//", lw=0)
+    axes["mesh"].axvspan(start - 0.4, start, **WALL)
     window(axes["mesh"], (start - 0.4, low[1] - 0.25), (place[:, 0].max() + 0.2, high[1] + 0.25))
     bar(made, painted, axes["mesh"], "V1", aspect=7, ticks=[-10, -5, 0], shrink=1.0)
     note(axes["mesh"], place[:, 0].max() - 0.2, np.mean([low[1], high[1]]), "time 0.67", ha="right",
@@ -219,8 +219,7 @@ def draw_sliding_block(runs):
             ground(axes[key], 0.0, low[0], high[0], 0.3)
         else:
             x = np.array([low[0] - 3, high[0] + 3])
-            axes[key].fill_between(x, -9, -x / np.sqrt(3), facecolor="0.87", edgecolor="0.6",
-                                   hatch="//", lw=0, zorder=0)
+            axes[key].fill_between(x, -9, -x / np.sqrt(3), **WALL)
         window(axes[key], low, high, title)
     bar(made, painted, [axes["a"], axes["b"]], "Mises stress", aspect=20)
     return made

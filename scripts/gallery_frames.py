@@ -2,8 +2,8 @@
 
 import numpy as np
 from gallery_style import (
-    BLUE, EXACT, ORANGE, SPEED, STRESS, bar, body, ground, halves, lines_of, mosaic, nearest,
-    window,
+    BLUE, EXACT, ORANGE, SPEED, STRESS, WALL, bar, body, ground, halves, lines_of, mosaic,
+    nearest, window,
 )
 
 
@@ -72,8 +72,7 @@ def draw_block(runs):
     before_at_after(made, [axes[k] for k in "abc"], mesh, (0, 30 * dt, 100 * dt),
                     ("V1", (-1, 1), SPEED, "velocity V1"), (low - (0.12, 0.05), high + 0.05))
     for k in "abc":
-        axes[k].axvspan(low[0] - 0.12, low[0] - 5.4 * dt, facecolor="0.87", edgecolor="0.6",
-                        hatch="//", lw=0, zorder=0)
+        axes[k].axvspan(low[0] - 0.12, low[0] - 5.4 * dt, **WALL)
     axes["f"].plot(1000 * run.time, np.abs(run.pair.CF1), color=BLUE, label="carom")
     speed = 1 / 40 / dt
     axes["f"].plot([0, 5.4e3 * dt, 5.4e3 * dt, 85.4e3 * dt, 85.4e3 * dt, 75],

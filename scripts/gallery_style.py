@@ -19,6 +19,7 @@ STYLE = {
     "figure.constrained_layout.h_pad": 0.06, "figure.constrained_layout.w_pad": 0.06,
 }
 EXACT = {"color": BLACK, "lw": 1.6, "ls": (0, (5, 2.5)), "zorder": 6}
+WALL = {"facecolor": "0.87", "edgecolor": "0.6", "hatch": "//", "lw": 0, "zorder": 0}
 # Lightness alone tells large from small; of stresses of both signs zero is white
 STRESS, SPEED, SIGNED = "viridis", "cividis", "RdBu_r"
 
@@ -66,7 +67,7 @@ def wall(axes, level, text, below=True):
     """A wall that fills the axes below (or above) an ordinate, with its name."""
     low, high = axes.get_ylim()
     edge = low if below else high
-    axes.axhspan(edge, level, facecolor="0.87", edgecolor="0.6", hatch="//", lw=0, zorder=0)
+    axes.axhspan(edge, level, **WALL)
     axes.axhline(level, color="0.25", lw=1.6, zorder=1)
     axes.set_ylim(low, high)
     axes.text(0.012, 0.5 * (edge + level), text, va="center", zorder=7, fontsize=13.5,
@@ -130,8 +131,7 @@ def window(axes, low, high, title=None):
 
 def ground(axes, level, low, high, depth):
     """A rigid plane below bodies."""
-    axes.fill_between([low, high], level - depth, level, facecolor="0.87", edgecolor="0.6",
-                      hatch="//", lw=0, zorder=0)
+    axes.fill_between([low, high], level - depth, level, **WALL)
     axes.plot([low, high], [level, level], color="0.25", lw=1.6, zorder=1)
 
 

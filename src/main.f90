@@ -33,7 +33,7 @@ program carom
 
    call start_ranks()
    call read_command(command, error)
-   call open_report(report, command)
+   if (command%json) call open_report(report, command)
    if (my_rank() > 0) then
       call set_threads(command%threads)
       if (command%kind == command_run) call catch_signals()

@@ -7,6 +7,7 @@ module display
    private
 
    public :: displayed, display_width, abridged, foreign_character
+   public :: next_character, hexadecimal
 
 contains
 
@@ -200,6 +201,7 @@ contains
       end if
    end function escape
 
+   !> The last so many digits of a number that is not negative.
    pure function hexadecimal(number, n_digits) result(digits)
       integer, intent(in) :: number, n_digits
       character(len=n_digits) :: digits

@@ -4,6 +4,7 @@ module json_text
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use kinds, only: wp, int64
    use text, only: to_text
+   use display, only: next_character, hexadecimal
    use memory_shortage, only: check_allocation
    implicit none
    private
@@ -165,21 +166,21 @@ contains
    pure function json_string(value) result(string)
       character(len=*), intent(in) :: value
       character(len=:), allocatable :: string
-      integer :: i, length
+      integer :: i, code, length
 
       string = '"'
       i = 1
       do while (i <= len(value))
-         length = character_length(value(i:min(i + 3, len(value))))
-         select case (length)
-         case (0)
+         call next_character(value, i, code, length)
+         select case (code)
+         case (:-1)
             string = string//'\ufffd'
-         case (1)
+         case (0:127)
             string = string//escaped(value(i:i))
          case default
             string = string//value(i:i + length - 1)
          end select
-         i = i + max(1, length)
+         i = i + length
       end do
       string = string//'"'
    end function json_string
@@ -199,50 +200,11 @@ contains
       case (34, 92)
          string = '\'//letter
       case (0:8, 11:12, 14:31, 127)
-         string = '\u00'//hexadecimal(iachar(letter))
+         string = '\u'//hexadecimal(iachar(letter), 4)
       case default
          string = letter
       end select
    end function escaped
-
-   !> Bytes of the UTF-8 character (RFC 3629) that bytes begin with; 0 if they do not.
-   pure function character_length(bytes) result(length)
-      character(len=*), intent(in) :: bytes
-      integer :: length
-      integer :: lowest, highest, i
-
-      lowest = 128
-      highest = 191
-      select case (iachar(bytes(1:1)))
-      case (0:127)
-         length = 1
-      case (194:223)
-         length = 2
-      case (224:239)
-         length = 3
-         if (iachar(bytes(1:1)) == 224) lowest = 160    ! shorter forms exist
-         if (iachar(bytes(1:1)) == 237) highest = 159   ! halves of a pair
-      case (240:244)
-         length = 4
-         if (iachar(bytes(1:1)) == 240) lowest = 144
-         if (iachar(bytes(1:1)) == 244) highest = 143
-      case default
-         length = 0
-      end select
-      if (length > len(bytes)) length = 0
-      do i = 2, length
-         if (iachar(bytes(i:i)) < lowest .or. iachar(bytes(i:i)) > highest) length = 0
-         lowest = 128
-         highest = 191
-      end do
-   end function character_length
-
-   pure function hexadecimal(code) result(digits)
-      integer, intent(in) :: code                !! below 256
-      character(len=2) :: digits
-
-      write (digits, '(z2.2)') code
-   end function hexadecimal
 
    !> The shortest decimal that is read as the same number.
    pure function json_number(value) result(number)

@@ -45,12 +45,13 @@ contains
       end if
       call put(new_line('a')//'  cure: a smaller model or fewer requests (carom check tells what ' &
             //'takes the memory), fewer threads, or a higher limit (ulimit -v)'//new_line('a'))
-      if (wants_json()) call put('{"program": "carom", "status": 4, "ending": "failed", "error": ' &
-            //'{"message": "out of memory", "file": null, "line": null, '//new_line('a'), &
-            standard_output)
-      if (wants_json()) call put('"cause": "out of memory", "cure": "a smaller model, fewer ' &
-            //'requests or threads, or a higher limit (ulimit -v)"}}'//new_line('a'), &
-            standard_output)
+      if (wants_json()) then
+         call put('{"program": "carom", "status": 4, "ending": "failed", "error": ' &
+               //'{"message": "out of memory", "file": null, "line": null, '//new_line('a'), &
+               standard_output)
+         call put('"cause": "out of memory", "cure": "a smaller model, fewer requests or ' &
+               //'threads, or a higher limit (ulimit -v)"}}'//new_line('a'), standard_output)
+      end if
       call exit_process(int(status_memory, c_int))
    end subroutine end_without_memory
 

@@ -20,6 +20,8 @@ module deck_check
    use run_log, only: log_type, say, remark
    use json_text, only: json_type
    use check_json, only: step_facts_type, facts_of, describe_check, put_lines
+   use continuum_bodies, only: body_list_type, find_bodies
+   use notices, only: is_warning
    use deck_doubts, only: doubt_deck
    use step_doubts, only: doubt_step, may_be_too_long
    use longest_period, only: find_longest_period
@@ -123,8 +125,7 @@ contains
          call say(log, trim(preview%explanation%lines(i)))
       end do
       do i = 1, size(simulation%remarks)
-         if (index(simulation%remarks(i)%text, 'warning: ') > 0) call say(log, &
-               simulation%remarks(i)%text)
+         if (is_warning(simulation%remarks(i)%text)) call say(log, simulation%remarks(i)%text)
       end do
    end subroutine report_explanation
 
@@ -135,17 +136,19 @@ contains
       logical, intent(in) :: aloud
       type(preview_type), intent(inout) :: preview   !! with its limit
       type(error_type), allocatable, intent(out) :: error
+      type(body_list_type) :: bodies
       integer :: status
 
       call check_building(preview%limit, simulation%model, error)
       if (allocated(error)) return
       call build_scene(simulation, error)
       if (allocated(error)) return
-      call doubt_deck(simulation)
+      call find_bodies(bodies, simulation%model)
+      call doubt_deck(simulation, bodies)
       allocate (preview%may_meet(size(simulation%contact%names)), source=.false., stat=status)
       call check_allocation(status)
       if (aloud) call report_model(simulation, log)
-      call go_through_steps(simulation, log, aloud, preview, error)
+      call go_through_steps(simulation, bodies, log, aloud, preview, error)
       if (allocated(error)) then
          call simulation%scene%system%matrices%release()
          return
@@ -158,8 +161,9 @@ contains
    end subroutine prepare
 
    !> Brings every step into force once, looks at what it will take, and lets its time pass.
-   subroutine go_through_steps(simulation, log, aloud, preview, error)
+   subroutine go_through_steps(simulation, bodies, log, aloud, preview, error)
       type(simulation_type), intent(inout) :: simulation
+      type(body_list_type), intent(in) :: bodies
       type(log_type), intent(in) :: log
       logical, intent(in) :: aloud
       type(preview_type), intent(inout) :: preview
@@ -174,16 +178,17 @@ contains
          call begin_step(simulation, i, error)
          if (allocated(error)) return
          if (aloud) call report_step(simulation, i, log)
-         call look_ahead(simulation, i, aloud, plan, preview)
+         call look_ahead(simulation, i, bodies, aloud, plan, preview)
          simulation%motion%motion%t = simulation%motion%motion%t &
                + simulation%model%steps(i)%duration
       end do
    end subroutine go_through_steps
 
    !> Memory, features and advice of a step in force.
-   subroutine look_ahead(simulation, i_step, aloud, plan, preview)
+   subroutine look_ahead(simulation, i_step, bodies, aloud, plan, preview)
       type(simulation_type), intent(inout) :: simulation
       integer, intent(in) :: i_step
+      type(body_list_type), intent(in) :: bodies
       logical, intent(in) :: aloud               !! this is a check
       type(plan_type), intent(in) :: plan
       type(preview_type), intent(inout) :: preview
@@ -195,16 +200,17 @@ contains
       call advise_step(preview%advice, simulation, i_step, features, &
             simulation%model%elements%n <= most_elements(merge(2, 1, aloud)))
       call advise_pairs(simulation, preview%may_meet)
-      call judge_step(simulation, i_step, merge(patience, max(least_patience, &
+      call judge_step(simulation, i_step, bodies, merge(patience, max(least_patience, &
             share*features%total()), aloud), preview)
       if (i_step > 1 .and. features%total() <= preview%features%total()) return
       preview%features = features
    end subroutine look_ahead
 
    !> What the longest period says of a step in force.
-   subroutine judge_step(simulation, i_step, seconds, preview)
+   subroutine judge_step(simulation, i_step, bodies, seconds, preview)
       type(simulation_type), intent(inout) :: simulation
       integer, intent(in) :: i_step
+      type(body_list_type), intent(in) :: bodies
       real(wp), intent(in) :: seconds            !! that finding it may take
       type(preview_type), intent(inout) :: preview
       real(wp) :: period
@@ -213,13 +219,13 @@ contains
       period = 0.0_wp
       costly = .true.
       if (preview%explanation%wanted) then
-         call find_longest_period(simulation, long_patience, period, costly)
+         call find_longest_period(simulation, bodies%n, long_patience, period, costly)
       else if (may_be_too_long(simulation, i_step)) then
-         call find_longest_period(simulation, seconds, period, costly)
+         call find_longest_period(simulation, bodies%n, seconds, period, costly)
       end if
-      call doubt_step(simulation, i_step, period)
+      call doubt_step(simulation, i_step, bodies, period)
       if (preview%explanation%wanted) call explain_start(preview%explanation, simulation, i_step, &
-            period, costly)
+            bodies, period, costly)
    end subroutine judge_step
 
    !> Pairs that cannot meet in any step.

@@ -8,7 +8,7 @@ module deck_doubts
          tri3, quad4
    use element_types, only: kind_name
    use model, only: model_type
-   use continuum_bodies, only: body_list_type, find_bodies
+   use continuum_bodies, only: body_list_type
    use contact_outlook, only: side_spacing
    use wave_speeds, only: element_length, material_of
    use surface_sides, only: doubt_sides
@@ -29,18 +29,15 @@ module deck_doubts
 contains
 
    !> Remarks on the model of a scene that has been built.
-   subroutine doubt_deck(simulation)
+   subroutine doubt_deck(simulation, bodies)
       type(simulation_type), intent(inout) :: simulation
-      type(body_list_type) :: bodies
+      type(body_list_type), intent(in) :: bodies
 
       call doubt_units(simulation)
       call doubt_output(simulation)
       if (any(is_solid_kind(simulation%model%elements%kind(:simulation%model%elements%n)))) then
-         call find_bodies(bodies, simulation%model)
          call doubt_elements(simulation)
          call doubt_bending(simulation, bodies)
-      else if (size(simulation%model%pairs) > 0) then
-         call find_bodies(bodies, simulation%model)
       end if
       call doubt_sides(simulation)
       call doubt_order(simulation)
@@ -113,10 +110,9 @@ contains
    pure function locking_cure(kind) result(cure)
       integer, intent(in) :: kind
       character(len=:), allocatable :: cure
-      character(len=:), allocatable :: family
+      character(len=3) :: family
 
       family = kind_name(kind)
-      family = family(:3)
       if (solid_topology(kind) == quad4) then
          cure = 'BBAR=YES on *SOLID SECTION, or '//family//'8R'
       else
@@ -163,10 +159,9 @@ contains
    pure function bending_cure(kind) result(cure)
       integer, intent(in) :: kind
       character(len=:), allocatable :: cure
-      character(len=:), allocatable :: family
+      character(len=3) :: family
 
       family = kind_name(kind)
-      family = family(:3)
       cure = family//'6 or '//family//'8, two through the thickness do'
    end function bending_cure
 

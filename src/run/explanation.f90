@@ -7,7 +7,7 @@ module explanation
    use dof_map, only: dof_map_type
    use structure, only: diagonal_mass
    use structure_energy, only: strain_energy, group_kinetic_energy
-   use continuum_bodies, only: body_list_type, find_bodies
+   use continuum_bodies, only: body_list_type
    use contact_outlook, only: outlook_type, look_out, surface_length, side_spacing
    use wave_speeds, only: longitudinal_speed, shear_speed, element_length, &
          speed_name, material_of
@@ -33,16 +33,15 @@ module explanation
 contains
 
    !> Explains the model in its first step, which is in force, and that step.
-   subroutine explain_start(self, simulation, i_step, period, costly)
+   subroutine explain_start(self, simulation, i_step, bodies, period, costly)
       type(lines_type), intent(inout) :: self
       type(simulation_type), intent(inout) :: simulation
       integer, intent(in) :: i_step
+      type(body_list_type), intent(in) :: bodies
       real(wp), intent(in) :: period             !! the longest of the step, 0: not known
       logical, intent(in) :: costly              !! since it takes too long to find
-      type(body_list_type) :: bodies
       type(outlook_type), allocatable :: outlooks(:)
 
-      call find_bodies(bodies, simulation%model)
       call look_out(simulation, i_step, bodies, outlooks)
       if (i_step == 1) then
          call explain_model(self, simulation, bodies)

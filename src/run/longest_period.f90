@@ -7,7 +7,6 @@ module longest_period
    use equation_order, only: order_equations, ordering_type
    use eigen_analysis, only: modes_type, find_modes
    use eigen_solver, only: small
-   use continuum_bodies, only: body_list_type, find_bodies
    use scene_setup, only: simulation_type
    implicit none
    private
@@ -30,8 +29,9 @@ contains
    !> Longest period of elastic motion, gaps open, about the state reached, prescribed freedoms at
    !> rest, all elements with their mass as it is. Zero if there is none, or if it would take longer
    !> than allowed.
-   subroutine find_longest_period(simulation, seconds, period, costly)
+   subroutine find_longest_period(simulation, n_bodies, seconds, period, costly)
       type(simulation_type), intent(inout) :: simulation
+      integer, intent(in) :: n_bodies            !! deforming ones
       real(wp), intent(in) :: seconds            !! allowed
       real(wp), intent(out) :: period
       logical, intent(out) :: costly             !! it would have taken longer
@@ -41,17 +41,21 @@ contains
 
       period = 0.0_wp
       costly = .false.
-      associate (system => simulation%scene%system)
-         if (system%structure%map%n_eq == 0) return
+      associate (system => simulation%scene%system, n_eq => &
+            simulation%scene%system%structure%map%n_eq)
+         if (n_eq == 0) return
          scheme = system%structure%groups%scheme
          if (.not. any(scheme == scheme_explicit)) then
-            call search(simulation, system%profile, seconds, period, costly)
+            call search(simulation, system%profile, n_bodies, seconds, period, costly)
             return
          end if
+         ! a profile has an entry an equation at least: to order them may be too much already
+         costly = n_eq > small .and. profile_entry*real(n_eq, wp) > seconds
+         if (costly) return
          system%structure%groups%scheme = scheme_implicit
          call order_equations(system%structure, simulation%held, simulation%model%equations, &
                profile, ordering)
-         call search(simulation, profile, seconds, period, costly)
+         call search(simulation, profile, n_bodies, seconds, period, costly)
          system%structure%groups%scheme = scheme
          call order_equations(system%structure, simulation%held, simulation%model%equations, &
                system%profile, simulation%ordering)
@@ -70,23 +74,22 @@ contains
       end if
    end function period_seconds
 
-   subroutine search(simulation, profile, seconds, period, costly)
+   subroutine search(simulation, profile, n_bodies, seconds, period, costly)
       type(simulation_type), intent(in) :: simulation
       type(profile_type), intent(in) :: profile
+      integer, intent(in) :: n_bodies
       real(wp), intent(in) :: seconds
       real(wp), intent(out) :: period
       logical, intent(out) :: costly
       type(modes_type) :: modes
       type(error_type), allocatable :: error
-      type(body_list_type) :: bodies
       real(wp) :: highest, spent
       integer :: n, i
 
       period = 0.0_wp
       costly = .false.
       highest = maxval(simulation%critical%omega)
-      call find_bodies(bodies, simulation%model)
-      n = 1 + rigid_modes*max(1, min(bodies%n, most_modes/rigid_modes))
+      n = 1 + rigid_modes*max(1, min(n_bodies, most_modes/rigid_modes))
       spent = 0.0_wp
       do
          spent = spent + period_seconds(profile)

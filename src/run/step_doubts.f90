@@ -7,7 +7,7 @@ module step_doubts
    use mesh, only: scheme_implicit
    use steps, only: procedure_dynamic
    use structure, only: count_resisting
-   use continuum_bodies, only: body_list_type, find_bodies
+   use continuum_bodies, only: body_list_type
    use contact_outlook, only: outlook_type, look_out
    use scene_setup, only: simulation_type, add_remark
    implicit none
@@ -36,11 +36,11 @@ contains
    end function may_be_too_long
 
    !> Remarks on a step that is in force.
-   subroutine doubt_step(simulation, i_step, period)
+   subroutine doubt_step(simulation, i_step, bodies, period)
       type(simulation_type), intent(inout) :: simulation
       integer, intent(in) :: i_step
+      type(body_list_type), intent(in) :: bodies
       real(wp), intent(in) :: period             !! the longest, 0: not known
-      type(body_list_type) :: bodies
       type(outlook_type), allocatable :: outlooks(:)
       real(wp) :: dt, shortest
       integer :: p
@@ -50,19 +50,16 @@ contains
          dt = step%dt
          if (step%order == 4) dt = dt/of_fourth_order
       end associate
-      if (simulation%scene%rows%n > 0 .and. i_step == 1) then
-         call find_bodies(bodies, simulation%model)
-         if (bodies%n > 0) then
-            call look_out(simulation, i_step, bodies, outlooks)
-            shortest = huge(1.0_wp)
-            do p = 1, size(outlooks)
-               if (outlooks(p)%body == 0 .or. outlooks(p)%first == 0) cycle
-               shortest = min(shortest, outlooks(p)%duration)
-            end do
-            if (shortest < least_of_contact*dt) then
-               call remark('a contact that lasts about 2 L / c = ', shortest)
-               return
-            end if
+      if (simulation%scene%rows%n > 0 .and. i_step == 1 .and. bodies%n > 0) then
+         call look_out(simulation, i_step, bodies, outlooks)
+         shortest = huge(1.0_wp)
+         do p = 1, size(outlooks)
+            if (outlooks(p)%body == 0 .or. outlooks(p)%first == 0) cycle
+            shortest = min(shortest, outlooks(p)%duration)
+         end do
+         if (shortest < least_of_contact*dt) then
+            call remark('a contact that lasts about 2 L / c = ', shortest)
+            return
          end if
       end if
       if (period > 0.0_wp .and. period < least_increments*dt) call remark('the longest period, ', &

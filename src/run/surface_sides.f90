@@ -1,5 +1,5 @@
 !> Whether surfaces face each other: pairs that can never touch because other sides of a body were
-!> named, and bodies behind a rigid plane.
+!> named.
 module surface_sides
    use kinds, only: wp
    use places, only: note_at
