@@ -106,7 +106,8 @@ contains
       real(wp), intent(inout) :: cells(:, :)     !! (n_recovered, n_elements)
       real(wp), intent(inout) :: points(:, :)    !! (n_recovered, n_nodes) sums
       integer, intent(inout) :: n_meeting(:)     !! (n_nodes)
-      real(wp), allocatable :: values(:, :), matrix(:, :)
+      real(wp) :: values(n_recovered, scene%system%structure%groups(g)%element%n_points)
+      real(wp), allocatable :: matrix(:, :)
       integer :: e, i
 
       associate (group => scene%system%structure%groups(g))
@@ -114,9 +115,9 @@ contains
          do e = 1, size(group%member)
             values = point_values(scene, g, e, snapshot)
             cells(:, group%member(e)) = sum(values, dim=2)/size(values, 2)
-            values = matmul(values, transpose(matrix))
             do i = 1, size(group%ien, 1)
-               points(:, group%ien(i, e)) = points(:, group%ien(i, e)) + values(:, i)
+               points(:, group%ien(i, e)) = points(:, group%ien(i, e)) &
+                     + matmul(values, matrix(i, :))
                n_meeting(group%ien(i, e)) = n_meeting(group%ien(i, e)) + 1
             end do
          end do
