@@ -10,6 +10,9 @@
 
 frame.NAME is the field at the points if the file has it there, else in the cells. Fields are read
 when they are named. After *FREQUENCY a frame is a mode, and its time is the frequency.
+
+In the file a field that is as it was in the frame before is not written again; where the values of
+a frame begin is in /VTKHDF/Steps/PointDataOffsets and CellDataOffsets.
 """
 
 import collections.abc
@@ -20,6 +23,14 @@ from carom_script import MissingError, ScriptError, need
 
 MESHIO_NAMES = {1: "vertex", 3: "line", 5: "triangle", 9: "quad", 21: "line3", 22: "triangle6",
                 23: "quad8"}
+
+
+def all_frames(grid, where, name):
+    """A field at the points ("Point") or in the cells ("Cell") of /VTKHDF, in all its frames
+    (frame, point or cell, component)."""
+    begins = grid[f"Steps/{where}DataOffsets/{name}"][: int(grid["Steps"].attrs["NSteps"])]
+    count = len(grid["Points" if where == "Point" else "Types"])
+    return grid[f"{where}Data/{name}"][()][begins[:, None] + np.arange(count)]
 
 
 class Frames(collections.abc.Sequence):

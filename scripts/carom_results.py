@@ -22,10 +22,11 @@ card which writes it.
 
 import functools
 import os
+import re
 
 import h5py
 import numpy as np
-from carom_frames import Frames
+from carom_frames import Frames, all_frames
 from carom_script import MissingError, ScriptError
 from carom_tables import Column, Events, Named, Table, natural_key, shortened
 
@@ -170,10 +171,14 @@ class Result:
         return Table(columns, missing)
 
     def array(self, path):
-        """Any dataset, as "model/node_id", in whole."""
+        """Any dataset, as "model/node_id", in whole; fields, as "VTKHDF/PointData/U", in all their
+        frames (frame, point, component)."""
         item = self.file.get(path)
         if not isinstance(item, h5py.Dataset):
             raise MissingError(f"'{self.path}' has no /{path.strip('/')}")
+        field = re.fullmatch(r"/?VTKHDF/(Point|Cell)Data/(\w+)", path)
+        if field:
+            return all_frames(self.file["VTKHDF"], *field.groups())
         return Column(item, path)[:] if item.shape else item[()]
 
     @property

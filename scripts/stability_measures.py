@@ -17,15 +17,14 @@ FRAMES = [f"VTKHDF/PointData/{q}" for q in "UVA"]
 
 def states_of(outcome, n, scale):
     """(n, times, 3): omega d, v, a / omega of the first n nodes, from the frames."""
-    times = len(outcome["VTKHDF/Steps/Values"])
-    d, v, a = (outcome[path][:, 0].reshape(times, -1).T[:n] for path in FRAMES)
+    d, v, a = (outcome[path][:, :n, 0].T for path in FRAMES)
     scale = np.asarray(scale)[:, None]
     return np.stack([d * scale, v, a / scale], axis=-1)
 
 
 def run_frames(carom, text, n, scale):
     """The states of the first n nodes at all times of a run."""
-    return states_of(run_text(carom, text, [*FRAMES, "VTKHDF/Steps/Values"]), n, scale)
+    return states_of(run_text(carom, text, FRAMES), n, scale)
 
 
 def fitted_radius(before, after):
@@ -235,7 +234,7 @@ def measure_impact_steps(carom, omega, deltas, beta):
         if len(times) != n or np.abs(times - (1.0 - delta)).max() > 1e-6:
             raise ScriptError(f"beta {beta}, delta {delta}: {len(times)} impacts of {n}, "
                               f"times {times.min()} to {times.max()}")
-        d, v = (outcome[path][-n:, 0] for path in FRAMES[:2])
+        d, v = (outcome[path][-1, :n, 0] for path in FRAMES[:2])
         after = np.stack([d * w, v], axis=1)
         for m, i in enumerate(members):
             found[i, j] = after[2 * m:2 * m + 2].T @ np.linalg.inv(starts[i])

@@ -1,14 +1,12 @@
-!> The calls to the HDF5 library, with those of hdf5_opening and hdf5_changes the only ones:
-!> datasets, attributes and growing datasets by path. hdf5_file and hdf5_reader give them types.
+!> The calls to the HDF5 library, with those of hdf5_opening, hdf5_series and hdf5_changes the only
+!> ones: groups, datasets and attributes by path. hdf5_file and hdf5_reader give them types.
 module hdf5_calls
    use, intrinsic :: iso_c_binding, only: c_char, c_loc, c_ptr
    use hdf5, only: h5_integer_kind, h5aclose_f, h5acreate_f, h5aexists_f, h5aopen_f, h5awrite_f, &
-         h5dclose_f, h5dcreate_f, h5dget_space_f, h5dopen_f, h5dread_f, h5dset_extent_f, &
-         h5dwrite_f, h5gclose_f, h5gcreate_f, h5kind_to_type, h5oclose_f, h5oopen_f, &
-         h5p_dataset_create_f, h5p_link_create_f, h5pclose_f, h5pcreate_f, h5pset_chunk_f, &
-         h5pset_create_inter_group_f, h5pset_deflate_f, h5pset_shuffle_f, h5s_scalar_f, &
-         h5s_select_set_f, h5s_unlimited_f, h5sclose_f, h5screate_f, h5screate_simple_f, &
-         h5sget_simple_extent_dims_f, h5sget_simple_extent_ndims_f, h5sselect_hyperslab_f, &
+         h5dclose_f, h5dcreate_f, h5dget_space_f, h5dopen_f, h5dread_f, h5dwrite_f, h5gclose_f, &
+         h5gcreate_f, h5kind_to_type, h5oclose_f, h5oopen_f, h5p_link_create_f, h5pclose_f, &
+         h5pcreate_f, h5pset_create_inter_group_f, h5s_scalar_f, h5sclose_f, h5screate_f, &
+         h5screate_simple_f, h5sget_simple_extent_dims_f, h5sget_simple_extent_ndims_f, &
          h5t_fortran_s1, h5t_ieee_f64le, h5t_native_double, h5t_native_integer, h5t_std_i64le, &
          h5t_std_u8le, h5t_str_nullpad_f, h5tclose_f, h5tcopy_f, h5tset_size_f, h5tset_strpad_f, &
          hid_t, hsize_t, size_t
@@ -17,10 +15,10 @@ module hdf5_calls
    implicit none
    private
 
-   public :: hid_t, hsize_t, storage_type, chunks_type
+   public :: hid_t, hsize_t, storage_type
    public :: real_storage, integer_storage, long_storage, byte_storage, text_storage, close_storage
    public :: make_group
-   public :: put_dataset, put_attribute, make_series, append_block, get_dims, shape_of, get_dataset
+   public :: put_dataset, put_attribute, get_dims, shape_of, get_dataset, describe, link_property
 
    !> How one kind of value is stored and how it lies in memory.
    type :: storage_type
@@ -28,12 +26,6 @@ module hdf5_calls
       integer(hid_t) :: in_memory = -1
       integer :: bytes = 8                       !! of a value in the file
    end type storage_type
-
-   !> How a growing dataset is cut into chunks, each of which lies together in the file.
-   type :: chunks_type
-      integer :: rows = 1
-      integer :: deflate = 0   !! level of compression behind a shuffle of bytes, 0: none
-   end type chunks_type
 
 contains
 
@@ -195,84 +187,6 @@ contains
             status)
       call close_storage(storage)
    end subroutine describe
-
-   !> Makes an empty dataset that grows along its last dimension.
-   subroutine make_series(file, path, description, storage, n_components, chunks, failed)
-      integer(hid_t), intent(in) :: file
-      character(len=*), intent(in) :: path, description
-      type(storage_type), intent(in) :: storage
-      integer, intent(in) :: n_components   !! 0: a list; n: rows of n values
-      type(chunks_type), intent(in) :: chunks
-      logical, intent(out) :: failed
-      integer(hsize_t), dimension(2) :: dims, most, chunk
-      integer(hid_t) :: space, dataset, properties, links
-      integer :: status(12), rank
-
-      status = 0
-      rank = merge(2, 1, n_components > 0)
-      dims = int(n_components, hsize_t)
-      most = dims
-      chunk = dims
-      dims(rank) = 0
-      most(rank) = h5s_unlimited_f
-      chunk(rank) = int(chunks%rows, hsize_t)
-      call h5screate_simple_f(rank, dims, space, status(1), maxdims=most)
-      call h5pcreate_f(h5p_dataset_create_f, properties, status(2))
-      call h5pset_chunk_f(properties, rank, chunk, status(3))
-      if (chunks%deflate > 0) then
-         call h5pset_shuffle_f(properties, status(10))
-         call h5pset_deflate_f(properties, chunks%deflate, status(11))
-      end if
-      call link_property(links, status(4))
-      call h5dcreate_f(file, path, storage%in_file, space, dataset, status(5), &
-            dcpl_id=properties, lcpl_id=links)
-      if (status(5) >= 0) then
-         call describe(dataset, description, status(12))
-         call h5dclose_f(dataset, status(6))
-      end if
-      call h5pclose_f(links, status(7))
-      call h5pclose_f(properties, status(8))
-      call h5sclose_f(space, status(9))
-      failed = any(status < 0)
-   end subroutine make_series
-
-   !> Extends a series by as many rows as the values make up and writes them there.
-   subroutine append_block(file, path, storage, n_values, address, failed)
-      integer(hid_t), intent(in) :: file
-      character(len=*), intent(in) :: path
-      type(storage_type), intent(in) :: storage
-      integer, intent(in) :: n_values   !! a whole number of rows
-      type(c_ptr), intent(in) :: address
-      logical, intent(out) :: failed
-      integer(hid_t) :: dataset, space, block
-      integer(hsize_t), allocatable :: dims(:), start(:), count(:)
-      integer :: status(9), rank, allocation
-
-      failed = .false.
-      if (n_values == 0) return
-      call h5dopen_f(file, path, dataset, status(1))
-      failed = status(1) < 0
-      if (failed) return
-      call shape_of(dataset, dims, failed)
-      rank = size(dims)
-      allocate (start(rank), count(rank), stat=allocation)
-      call check_allocation(allocation)
-      start = 0
-      start(rank) = dims(rank)
-      count = dims
-      count(rank) = n_values/product(dims(:rank - 1))
-      dims(rank) = start(rank) + count(rank)
-      call h5dset_extent_f(dataset, dims, status(2))
-      call h5dget_space_f(dataset, space, status(3))
-      call h5sselect_hyperslab_f(space, h5s_select_set_f, start, count, status(4))
-      call h5screate_simple_f(rank, count, block, status(5))
-      call h5dwrite_f(dataset, storage%in_memory, address, status(6), mem_space_id=block, &
-            file_space_id=space)
-      call h5sclose_f(block, status(7))
-      call h5sclose_f(space, status(8))
-      call h5dclose_f(dataset, status(9))
-      failed = failed .or. any(status < 0)
-   end subroutine append_block
 
    !> The shape of a dataset as Fortran sees it: rows last; none for a scalar.
    subroutine get_dims(file, path, dims, failed)

@@ -1,15 +1,14 @@
 !> Further calls to the HDF5 library: what a file holds, and changes of it. Datasets are written
-!> anew, taken away, cut back to their first rows.
+!> anew and taken away.
 module hdf5_changes
    use, intrinsic :: iso_c_binding, only: c_ptr
-   use hdf5, only: h5dclose_f, h5dget_type_f, h5dopen_f, h5dset_extent_f, h5dwrite_f, h5ldelete_f, &
+   use hdf5, only: h5dclose_f, h5dget_type_f, h5dopen_f, h5dwrite_f, h5ldelete_f, &
          h5lexists_f, h5tclose_f, h5tequal_f, h5tget_size_f, size_t
-   use hdf5_calls, only: get_dims, hid_t, hsize_t, shape_of, storage_type
+   use hdf5_calls, only: hid_t, hsize_t, shape_of, storage_type
    implicit none
    private
 
-   public :: has_object, remove_object, overwrite_dataset, cut_rows, &
-         text_length
+   public :: has_object, remove_object, overwrite_dataset, text_length
 
 contains
 
@@ -88,30 +87,6 @@ contains
       fits = .not. failed .and. size(present_dims) == size(dims)
       if (fits) fits = all(present_dims == dims)
    end function fits
-
-   !> Cuts a growing dataset back to its first rows.
-   subroutine cut_rows(file, path, n_rows, n_missing, failed)
-      integer(hid_t), intent(in) :: file
-      character(len=*), intent(in) :: path
-      integer(hsize_t), intent(in) :: n_rows
-      integer(hsize_t), intent(out) :: n_missing   !! rows that it lacks; it stays as it is then
-      logical, intent(out) :: failed
-      integer(hsize_t), allocatable :: dims(:)
-      integer(hid_t) :: dataset
-      integer :: status(3), rank
-
-      n_missing = n_rows
-      call get_dims(file, path, dims, failed)
-      if (failed) return
-      rank = size(dims)
-      n_missing = max(0_hsize_t, n_rows - dims(rank))
-      if (n_rows >= dims(rank)) return
-      dims(rank) = n_rows
-      call h5dopen_f(file, path, dataset, status(1))
-      call h5dset_extent_f(dataset, dims, status(2))
-      call h5dclose_f(dataset, status(3))
-      failed = any(status < 0)
-   end subroutine cut_rows
 
    !> Characters of each text of a dataset, 0 where it cannot be read.
    function text_length(file, path) result(length)

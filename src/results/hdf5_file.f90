@@ -6,9 +6,9 @@
 module hdf5_file
    use, intrinsic :: iso_c_binding, only: c_char, c_loc, c_ptr
    use errors, only: error_type
-   use hdf5_calls, only: append_block, byte_storage, chunks_type, close_storage, hsize_t, &
-         integer_storage, long_storage, make_series, put_attribute, real_storage, storage_type, &
-         text_storage
+   use hdf5_calls, only: byte_storage, close_storage, hsize_t, integer_storage, long_storage, &
+         put_attribute, real_storage, storage_type, text_storage
+   use hdf5_series, only: append_block, chunks_type, get_last_block, make_series
    use hdf5_output, only: hdf5_output_type
    use, intrinsic :: iso_fortran_env, only: int8
    use kinds, only: int64, wp
@@ -34,6 +34,8 @@ module hdf5_file
       generic :: set_attribute => set_integer, set_integers, set_real, set_text
       generic :: append => append_reals, append_real_table, append_integers, append_longs, &
             append_texts
+      generic :: read_last => read_last_table, read_last_longs
+      procedure, private :: read_last_table, read_last_longs
       procedure, private :: write_reals, write_real_table, write_integers, write_integer_table
       procedure, private :: write_text, write_texts, write_longs, overwrite_reals, overwrite_longs
       procedure, private :: set_integer, set_integers, set_real, set_text
@@ -309,6 +311,29 @@ contains
       call append_block(self%id, path, storage, n_values, address, failed)
       if (failed) call self%write_failure(path, error)
    end subroutine append_values
+
+   !> The last rows of a series of a reopened file.
+   subroutine read_last_table(self, path, values, error)
+      class(hdf5_file_type), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      real(wp), intent(inout), contiguous, target :: values(:, :)   !! (component, row); (1, row)
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+      logical :: failed
+
+      call get_last_block(self%id, path, real_storage(), size(values), c_loc(values), failed)
+      if (failed) call self%read_failure(path, error)
+   end subroutine read_last_table
+
+   subroutine read_last_longs(self, path, values, error)
+      class(hdf5_file_type), intent(inout) :: self
+      character(len=*), intent(in) :: path
+      integer(int64), intent(inout), contiguous, target :: values(:)
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+      logical :: failed
+
+      call get_last_block(self%id, path, long_storage(), size(values), c_loc(values), failed)
+      if (failed) call self%read_failure(path, error)
+   end subroutine read_last_longs
 
    !> The characters of the texts, one after the other; a blank for a text of no length.
    pure subroutine to_bytes(texts, bytes)

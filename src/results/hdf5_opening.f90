@@ -1,4 +1,4 @@
-!> The calls to the HDF5 library that open and close files; hdf5_calls has all others.
+!> The calls to the HDF5 library that open and close files; hdf5_calls has others.
 module hdf5_opening
    use hdf5, only: h5dont_atexit_f, h5eset_auto_f, h5f_acc_rdonly_f, h5f_acc_rdwr_f, &
          h5f_acc_trunc_f, h5f_close_strong_f, h5f_scope_global_f, h5fclose_f, h5fcreate_f, &

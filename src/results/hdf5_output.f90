@@ -19,7 +19,8 @@ module hdf5_output
          forget_room, is_claimed, has_published, part_path
    use, intrinsic :: iso_c_binding, only: c_ptr
    use hdf5_calls, only: hsize_t, make_group, put_dataset, storage_type
-   use hdf5_changes, only: cut_rows, has_object, overwrite_dataset, remove_object
+   use hdf5_series, only: cut_rows
+   use hdf5_changes, only: has_object, overwrite_dataset, remove_object
    use hdf5_opening, only: close_file, create_file, file_size, flush_file, hid_t, modify_file
    implicit none
    private
@@ -64,6 +65,7 @@ module hdf5_output
       procedure :: put => put_values
       procedure :: renew => renew_values
       procedure :: write_failure
+      procedure :: read_failure
    end type hdf5_output_type
 
 contains
@@ -365,5 +367,17 @@ contains
             "': the disk fails or is full, there is no access any more, or the file is not open" &
             //new_line('a')//'  cure: see whether the disk has room and is in order')
    end subroutine write_failure
+
+   !> The error of something that cannot be read from a reopened file.
+   subroutine read_failure(self, object, error)
+      class(hdf5_output_type), intent(inout) :: self
+      character(len=*), intent(in) :: object
+      type(error_type), allocatable, intent(out) :: error
+
+      self%broken = self%broken .or. is_claimed(self%place)
+      call new_error(error, status_file, 'cannot read '//object//" of '"//self%path &
+            //"': it is damaged, or the disk fails"//new_line('a')//'  cure: start anew, or with ' &
+            //'--restart from other results')
+   end subroutine read_failure
 
 end module hdf5_output

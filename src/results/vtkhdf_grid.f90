@@ -1,13 +1,15 @@
 !> The moving mesh in the group /VTKHDF of the result file, for ParaView and VTK 9.3 or later.
 !>
-!> VTKHDF 2.0, temporal UnstructuredGrid: the mesh is written once, the fields frame by frame.
+!> VTKHDF 2.0, temporal UnstructuredGrid: the mesh is written once, the fields frame by frame, those
+!> that stay as they are once too.
 !> https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html#vtkhdf-file-format
 !> Frames of small meshes are gathered in memory and written in blocks; `flush` writes what is
 !> left, and must be called before the file is closed. The data are written first and the number
 !> of frames last: whatever happens in between, a reader finds the frames before.
 module vtkhdf_grid
    use errors, only: error_type, new_error, status_internal, status_numerical
-   use grid_field, only: field_type, chunk_rows, is_sound, append_field, copy_frame, cut_field
+   use grid_field, only: field_type, new_field, chunk_rows, set_frame, is_sound, begin_frame, &
+         append_field, cut_field
    use hdf5_file, only: hdf5_file_type, series_integer, series_real
    use kinds, only: int64, wp
    use text, only: to_text
@@ -181,12 +183,9 @@ contains
       do i = 1, field - 1
          longer(i) = self%fields(i)
       end do
+      call new_field(longer(field), n_components, n_values, size(self%times))
       longer(field)%data_path = root//'/'//place//'Data/'//name
       longer(field)%offset_path = root//'/Steps/'//place//'DataOffsets/'//name
-      longer(field)%n = n_values
-      allocate (longer(field)%held(n_components, n_values*size(self%times)), source=0.0_wp, &
-            stat=status)
-      call check_allocation(status)
       call move_alloc(longer, self%fields)
    end subroutine add_field
 
@@ -252,10 +251,8 @@ contains
       class(vtkhdf_grid_type), intent(inout) :: self
       integer, intent(in) :: field
       real(wp), intent(in) :: values(:)   !! (point or cell)
-      integer :: before
 
-      before = self%n_held*self%fields(field)%n
-      self%fields(field)%held(1, before + 1:before + self%fields(field)%n) = values
+      call set_frame(self%fields(field), self%n_held, values)
    end subroutine set_scalars
 
    !> Hands over a vector or tensor field for the next frame; it stays until it is set again.
@@ -263,10 +260,8 @@ contains
       class(vtkhdf_grid_type), intent(inout) :: self
       integer, intent(in) :: field
       real(wp), intent(in) :: values(:, :)   !! (component, point or cell)
-      integer :: before
 
-      before = self%n_held*self%fields(field)%n
-      self%fields(field)%held(:, before + 1:before + self%fields(field)%n) = values
+      call set_frame(self%fields(field), self%n_held, values)
    end subroutine set_vectors
 
    !> Makes a frame of the fields as they were handed over.
@@ -276,7 +271,7 @@ contains
       real(wp), intent(in) :: time   !! or whatever orders the frames, e.g. a frequency
       !> status_file; status_numerical: a value that is not finite
       type(error_type), allocatable, intent(out) :: error
-      integer :: i, n
+      integer :: i
 
       call check_finite(self, time, error)
       if (allocated(error)) return
@@ -287,8 +282,7 @@ contains
          return
       end if
       do i = 1, size(self%fields)
-         n = self%fields(i)%n
-         call copy_frame(self%fields(i), (self%n_held - 1)*n, self%n_held*n)
+         call begin_frame(self%fields(i), self%n_held)
       end do
    end subroutine append_frame
 
@@ -297,23 +291,19 @@ contains
       class(vtkhdf_grid_type), intent(inout) :: self
       type(hdf5_file_type), intent(inout) :: file
       type(error_type), allocatable, intent(out) :: error   !! status_file
-      integer :: i, last
+      integer :: i
 
       if (self%n_held == 0) return
       call file%reserve(bytes_needed(self), error)
       if (allocated(error)) return
       do i = 1, size(self%fields)
-         call append_field(self%fields(i), file, self%n_written, self%n_held, error)
+         call append_field(self%fields(i), file, self%n_held, error)
          if (allocated(error)) return
       end do
       call append_steps(self, file, error)
       if (allocated(error)) return
       call file%set_attribute(root//'/Steps', 'NSteps', self%count_frames(), error)
       if (allocated(error)) return
-      last = min(self%n_held, size(self%times) - 1)
-      do i = 1, size(self%fields)
-         call copy_frame(self%fields(i), last*self%fields(i)%n, 0)
-      end do
       self%n_written = self%count_frames()
       self%n_held = 0
    end subroutine flush_frames

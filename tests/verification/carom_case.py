@@ -17,6 +17,16 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 INPUT = ROOT / 'input'
 sys.path.insert(0, str(ROOT / 'scripts'))
+from carom_frames import all_frames
+
+
+def whole(file, name):
+    """A dataset as an array; a field 'VTKHDF/PointData/U' as the rows of all its frames."""
+    group, _, field = name.strip('/').rpartition('/')
+    if group not in ('VTKHDF/PointData', 'VTKHDF/CellData'):
+        return np.asarray(file[name])
+    frames = all_frames(file['VTKHDF'], group[7:-4], field)
+    return frames.reshape(-1, *frames.shape[2:])
 
 
 class Run:
@@ -27,8 +37,9 @@ class Run:
         self.file = h5py.File(path, 'r') if path.exists() else None
 
     def __getitem__(self, name):
-        """A dataset as an array: 'history/node_1/U1', 'energy/total'."""
-        return np.asarray(self.file[name])
+        """A dataset as an array: 'history/node_1/U1', 'energy/total'; of fields all frames, one
+        behind the other."""
+        return whole(self.file, name)
 
     def events(self, kind='impact'):
         """The rows of /events of one kind as a dictionary of arrays."""

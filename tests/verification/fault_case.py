@@ -16,7 +16,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from carom_case import INPUT, scratch_folder
+from carom_case import INPUT, scratch_folder, whole
 
 PROGRAM = str(Path(sys.argv[1]).resolve()) if len(sys.argv) > 1 else ''
 SDOF = (INPUT / 'sdof/sdof.inp').read_text()
@@ -153,7 +153,7 @@ def rows_of(path):
         frames = int(file['VTKHDF/Steps'].attrs['NSteps'])
         lists = {len(file[f'VTKHDF/Steps/{name}']) for name in ('Values', 'PartOffsets')}
         points = len(file['VTKHDF/Points'])
-        u = file['VTKHDF/PointData/U'][()]
+        u = whole(file, 'VTKHDF/PointData/U')
         sound = lists == {frames} and len(u) == frames*points and np.isfinite(u).all()
         return counts[0], counts[1], frames if sound else -1
 

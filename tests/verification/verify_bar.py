@@ -4,7 +4,7 @@ import re
 import h5py
 import numpy as np
 
-from carom_case import INPUT, Checks, run_deck
+from carom_case import INPUT, Checks, run_deck, whole
 
 FOLDER = INPUT / 'bar'
 COURANT = 0.1/30
@@ -48,7 +48,7 @@ class Bar:
 def momentum(bar):
     """Sum of nodal mass times velocity at the first and the last frame."""
     with h5py.File(bar.run.path) as file:
-        v = file['VTKHDF/PointData/V'][()][:, 0].reshape(-1, 101)
+        v = whole(file, 'VTKHDF/PointData/V')[:, 0].reshape(-1, 101)
     mass = np.full(101, 0.1)
     mass[[0, -1]] = 0.05
     return v[[0, -1]] @ mass

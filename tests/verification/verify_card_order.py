@@ -17,7 +17,7 @@ import h5py
 import numpy as np
 
 from card_order import moved, shuffled
-from carom_case import INPUT, Checks, run_deck, scratch_folder
+from carom_case import INPUT, Checks, run_deck, scratch_folder, whole
 from carom_deck import Deck
 
 SHORTER = {'block/block': 0.0075, 'two_discs/equal': 0.3, 'two_discs/oblique': 0.4,
@@ -46,9 +46,9 @@ def fields_of(file):
     found = {}
     for group, ids in (('PointData', 'node_id'), ('CellData', 'element_id')):
         order = np.argsort(file[f'model/{ids}'][()])
-        for name, data in file.get(f'VTKHDF/{group}', {}).items():
-            found[f'{group}/{name}'] = data[()].reshape(
-                data.shape[0] // len(order), len(order), -1)[:, order]
+        for name in file.get(f'VTKHDF/{group}', {}):
+            rows = whole(file, f'VTKHDF/{group}/{name}')
+            found[f'{group}/{name}'] = rows.reshape(len(rows) // len(order), len(order), -1)[:, order]
     return found
 
 

@@ -289,7 +289,8 @@ def check_vtk(checks, what, run):
         reader.SetStep(k)
         reader.Update()
         data = reader.GetOutputDataObject(0).GetPointData()
-        for name, values in run.file['VTKHDF/PointData'].items():
+        for name in run.file['VTKHDF/PointData']:
+            values = run[f'VTKHDF/PointData/{name}']
             n = len(values)//count
             good.append(np.array_equal(vtk_to_numpy(data.GetArray(name)), values[k*n:(k + 1)*n],
                                        equal_nan=True))
