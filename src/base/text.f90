@@ -4,7 +4,7 @@ module text
    implicit none
    private
 
-   public :: lower_case, upper_case, to_text, plural
+   public :: lower_case, upper_case, to_text, plural, shell_word
 
    !> A number as text without blanks: integers in full, reals in the shortest of the usual forms.
    interface to_text
@@ -107,5 +107,26 @@ contains
       string = to_text(count)//' '//word
       if (count /= 1) string = string//'s'
    end function plural
+
+   !> A word as a shell takes it: in quotation marks unless all its characters are harmless there.
+   pure function shell_word(word) result(quoted)
+      character(len=*), intent(in) :: word
+      character(len=:), allocatable :: quoted
+      character(len=*), parameter :: harmless = 'abcdefghijklmnopqrstuvwxyz' &
+            //'ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,:/@%'
+      integer :: i
+
+      quoted = word
+      if (len(word) > 0 .and. verify(word, harmless) == 0) return
+      quoted = ''''
+      do i = 1, len(word)
+         if (word(i:i) == '''') then
+            quoted = quoted//'''\'''''
+         else
+            quoted = quoted//word(i:i)
+         end if
+      end do
+      quoted = quoted//''''
+   end function shell_word
 
 end module text

@@ -57,7 +57,7 @@ contains
       type(model_type), intent(in) :: model
       type(contact_pair_list_type), intent(out) :: list
       type(error_type), allocatable, intent(out) :: error
-      integer :: p, pass, n, n_gaps, e, status
+      integer :: p, pass, n, n_gaps, pair, e, status
 
       n_gaps = count(model%elements%kind(:model%elements%n) == element_gap)
       n = n_gaps
@@ -70,19 +70,30 @@ contains
       call check_allocation(status)
       n = 0
       do p = 1, size(model%pairs)
-         call append_name(list, pair_name(model, p))
+         call name_rows(list, pair_name(model, p), pair)
+         if (pair < p) then
+            call fail_at(error, model%source, model%pairs(p)%place, 'in the results this pair is ' &
+                  //'named '//pair_name(model, p)//', and so is another', &
+                  'leave out a pair that is there twice, or rename a surface')
+            return
+         end if
          do pass = 1, model%pairs(p)%passes
-            call add_pair(model, p, pass, list, n)
+            call add_pair(model, p, pass, pair, list, n)
          end do
       end do
       do e = 1, model%elements%n
          if (model%elements%kind(e) /= element_gap) cycle
          n = n + 1
-         call append_name(list, trim(model%element_sets(model%sections(model%elements%section(e)) &
-               %set)%name))
          call make_gap_row(model, e, list%rows(n), error)
          if (allocated(error)) return
-         list%rows(n)%pair = pair_index(list)
+         call name_rows(list, trim(model%element_sets(model%sections(model%elements%section(e)) &
+               %set)%name), list%rows(n)%pair)
+         if (list%rows(n)%pair <= size(model%pairs)) then
+            call fail_at(error, model%source, model%sections(model%elements%section(e))%place, &
+                  'in the results these gaps are named '//trim(list%names(list%rows(n)%pair)) &
+                  //', and so is a contact pair', 'rename the element set, or a surface')
+            return
+         end if
       end do
       list%names = list%names(:list%n_names)
    end subroutine find_contact_rows
@@ -111,9 +122,10 @@ contains
    end function pair_name
 
    !> The rows of one pass of a pair.
-   pure subroutine add_pair(model, pair, pass, list, n)
+   pure subroutine add_pair(model, pair, pass, named, list, n)
       type(model_type), intent(in) :: model
       integer, intent(in) :: pair, pass
+      integer, intent(in) :: named               !! its index into the names
       type(contact_pair_list_type), intent(inout) :: list
       integer, intent(inout) :: n                !! rows so far
       integer :: i
@@ -122,7 +134,7 @@ contains
          do i = 1, size(nodes)
             n = n + 1
             associate (row => list%rows(n))
-               row%pair = pair_index(list)
+               row%pair = named
                row%model_pair = pair
                row%pass = pass
                row%interaction = model%pairs(pair)%interaction
@@ -136,24 +148,19 @@ contains
       end associate
    end subroutine add_pair
 
-   !> Appends the name of a pair unless it was the last one.
-   subroutine append_name(list, name)
+   !> The index of a name, which is appended unless it is there; most often it is the last one.
+   pure subroutine name_rows(list, name, named)
       type(contact_pair_list_type), intent(inout) :: list
       character(len=*), intent(in) :: name
+      integer, intent(out) :: named
 
-      if (list%n_names > 0) then
-         if (list%names(list%n_names) == name) return
-      end if
+      do named = list%n_names, 1, -1
+         if (list%names(named) == name) return
+      end do
       list%n_names = list%n_names + 1
-      list%names(list%n_names) = name
-   end subroutine append_name
-
-   pure function pair_index(list) result(pair)
-      type(contact_pair_list_type), intent(in) :: list
-      integer :: pair
-
-      pair = list%n_names
-   end function pair_index
+      named = list%n_names
+      list%names(named) = name
+   end subroutine name_rows
 
    !> A plane: g = n . (x + u - x_plane - s(t)). The normal of a circle is not known yet.
    pure subroutine face_rigid(model, pair, row)

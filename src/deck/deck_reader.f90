@@ -3,7 +3,6 @@ module deck_reader
    use display, only: displayed
    use errors, only: error_type
    use memory_shortage, only: check_allocation
-   use memory_shortage, only: check_allocation
    use places, only: fail_at, note_at, source_line
    use model, only: model_type
    use histories, only: boundary_type, nodal_value_type

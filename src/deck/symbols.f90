@@ -3,7 +3,6 @@ module symbols
    use kinds, only: wp
    use errors, only: error_type, new_error, status_usage
    use memory_shortage, only: check_allocation
-   use memory_shortage, only: check_allocation
    use places, only: place_type, source_type, source_line, fail_at
    use properties, only: name_length
    use words, only: squeezed, advice, is_blank

@@ -5,7 +5,6 @@ module gauss_matrices
    use errors, only: error_type
    use clock, only: seconds_now
    use memory_shortage, only: check_allocation
-   use memory_shortage, only: check_allocation
    use skyline_matrix, only: profile_type, skyline_type, profile_entries
    use complex_skyline, only: complex_skyline_type, new_complex_skyline, column_values
    use structure, only: structure_type

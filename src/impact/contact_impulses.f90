@@ -234,7 +234,8 @@ contains
       logical :: solved
 
       if (.not. any(motion%touching)) return
-      length = max(gap_size(scene%rows, motion%motion, scene%dt), scene%geometry%size)
+      length = max(gap_size(scene%rows, motion%motion, scene%dt), scene%geometry%size, &
+            maxval(abs(motion%motion%d)))
       gaps = gaps_to_close(scene, motion)
       rates = merge(row_rates(scene%rows, motion%motion), 0.0_wp, motion%touching)
       if (maxval(abs(gaps)) <= gap_limit .and. maxval(abs(rates)) <= rate_limit) return

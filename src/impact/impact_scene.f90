@@ -5,7 +5,6 @@ module impact_scene
    use state_archive, only: archive_type
    use memory_shortage, only: check_allocation
    use text, only: to_text
-   use memory_shortage, only: check_allocation
    use surfaces, only: beta_automatic, method_transformation
    use contact_motion, only: contact_motion_type, new_contact_motion, copy_contact_motion, &
          exchange_motions

@@ -1,7 +1,6 @@
 !> Putting a model together: appending in amortised constant time, and sorting.
 module model_building
    use memory_shortage, only: check_allocation
-   use memory_shortage, only: check_allocation
    use histories, only: boundary_type, nodal_value_type
    use places, only: place_type
    implicit none

@@ -10,13 +10,15 @@ module column_table
    use hdf5_file, only: hdf5_file_type, series_integer, series_real
    use kinds, only: int64, wp
    use text, only: to_text
+   use properties, only: name_length
    use memory_shortage, only: check_allocation
    implicit none
    private
 
-   public :: column_table_type
+   public :: column_table_type, text_length
 
-   integer, parameter :: text_length = 80      ! the longest name of a deck
+   !> Characters of a text at most: a contact pair is named by its two surfaces.
+   integer, parameter :: text_length = 2*name_length + 1
    integer, parameter :: chunk_rows = 512      ! 4 KiB a chunk of reals
    integer, parameter :: most_rows = 4096      ! rows gathered before they are written
    integer, parameter :: most_values = 2**21   ! 16 MiB of reals gathered at most

@@ -1,5 +1,6 @@
 !> Which results a deck asks for, over all its steps together.
 module output_plan
+   use, intrinsic :: iso_c_binding, only: c_bool
    use memory_shortage, only: check_allocation
    use model, only: model_type
    use steps, only: request_type, n_quantities, procedure_frequency, request_node_print, &
@@ -10,10 +11,10 @@ module output_plan
 
    public :: plan_type, new_plan, is_due
 
-   !> What is recorded of each node, element and pair.
+   !> What is recorded of each node, element and pair; a byte each.
    type :: plan_type
-      logical, allocatable :: node_print(:, :)      !! (n_quantities, n_nodes)
-      logical, allocatable :: element_print(:, :)   !! (n_quantities, n_elements)
+      logical(c_bool), allocatable :: node_print(:, :)      !! (n_quantities, n_nodes)
+      logical(c_bool), allocatable :: element_print(:, :)   !! (n_quantities, n_elements)
       logical :: contact_print(n_quantities) = .false.
       logical :: file(n_quantities) = .false.       !! fields of the grid
       logical :: energy = .false.
@@ -33,8 +34,8 @@ contains
       call check_allocation(status)
       allocate (self%element_print(n_quantities, model%elements%n), stat=status)
       call check_allocation(status)
-      self%node_print = .false.
-      self%element_print = .false.
+      self%node_print = .false._c_bool
+      self%element_print = .false._c_bool
       self%modes_only = any(model%steps%procedure == procedure_frequency)
       do s = 1, size(model%steps)
          do r = 1, size(model%steps(s)%requests)
@@ -54,18 +55,18 @@ contains
          do i = 1, n_quantities
             if (.not. request%wanted(i)) cycle
             if (request%set == 0) then
-               self%node_print(i, :) = .true.
+               self%node_print(i, :) = .true._c_bool
             else
-               self%node_print(i, model%node_sets(request%set)%members) = .true.
+               self%node_print(i, model%node_sets(request%set)%members) = .true._c_bool
             end if
          end do
       case (request_element_print)
          do i = 1, n_quantities
             if (.not. request%wanted(i)) cycle
             if (request%set == 0) then
-               self%element_print(i, :) = .true.
+               self%element_print(i, :) = .true._c_bool
             else
-               self%element_print(i, model%element_sets(request%set)%members) = .true.
+               self%element_print(i, model%element_sets(request%set)%members) = .true._c_bool
             end if
          end do
       case (request_contact_print)

@@ -12,7 +12,7 @@ module result_file
    use impact_scene, only: scene_type, contact_motion_type, event_impact, event_capture, &
          event_release, event_contact
    use hdf5_file, only: hdf5_file_type
-   use column_table, only: column_table_type
+   use column_table, only: column_table_type, text_length
    use output_plan, only: plan_type, new_plan, is_due
    use equation_of_motion, only: rigid_mass
    use snapshot, only: snapshot_type, take_snapshot, on_nodes, state_stuck
@@ -47,8 +47,6 @@ module result_file
       logical :: has_records = .false.           !! something worth a file of results
    end type result_file_type
 
-   integer, parameter :: text_length = 80
-
 contains
 
    !> Creates the file with all its groups. The model is known to be sound by now.
@@ -82,6 +80,8 @@ contains
       if (allocated(error)) return
       call new_history(self%history, self%file, model, scene, list, self%plan, error)
       if (allocated(error)) return
+      ! the history has its columns; by node and element they would take much
+      deallocate (self%plan%node_print, self%plan%element_print)
       if (self%plan%energy) call new_energies(self%energy, self%file, scene, error)
       if (allocated(error)) return
       call new_events(self, list, error)
@@ -277,14 +277,12 @@ contains
       type(contact_pair_list_type), intent(in) :: list
       type(error_type), allocatable, intent(out) :: error
       character(len=text_length) :: texts(2)
-      character(len=len(list%names)) :: name
       integer :: i
 
       do i = 1, scene%n_events
          associate (event => scene%events(i))
             texts(1) = event_name(event%kind)
-            name = list%names(list%rows(event%row)%pair)
-            texts(2) = name(:text_length)
+            texts(2) = list%names(list%rows(event%row)%pair)
             call self%events%append_row(self%file, [event%time, event%rate_before, &
                   event%rate_after, event%impulse, event%beta], &
                   [scene%rows%node_id(event%row), int(event%n_solves), &

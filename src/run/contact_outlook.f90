@@ -37,7 +37,8 @@ module contact_outlook
 
 contains
 
-   !> Looks at every pair in the state reached, by the velocities it has and free fall.
+   !> Looks at every pair in the state reached, by the velocities it has and free fall; in a static
+   !> step nothing moves by itself.
    subroutine look_out(simulation, i_step, bodies, outlooks)
       type(simulation_type), intent(inout) :: simulation
       integer, intent(in) :: i_step              !! in force
@@ -51,8 +52,12 @@ contains
       outlooks = [(none, i=1, size(simulation%contact%names))]
       if (simulation%scene%rows%n == 0) return
       call gaps_at_start(simulation%scene, simulation%motion%motion, gaps)
-      rates = row_rates(simulation%scene%rows, simulation%motion%motion)
-      falls = row_accelerations(simulation%scene%rows, free_fall(simulation, i_step))
+      rates = 0.0_wp
+      falls = 0.0_wp
+      if (.not. simulation%scene%system%static) then
+         rates = row_rates(simulation%scene%rows, simulation%motion%motion)
+         falls = row_accelerations(simulation%scene%rows, free_fall(simulation, i_step))
+      end if
       do i = 1, size(gaps)
          associate (row => simulation%contact%rows(i), one => outlooks(simulation%contact &
                %rows(i)%pair))

@@ -9,7 +9,7 @@ module deck_check
    use memory_limit, only: memory_limit_type, find_limit
    use memory_shortage, only: check_allocation
    use command_line, only: command_type
-   use scene_setup, only: simulation_type, build_scene, begin_step
+   use scene_setup, only: simulation_type, build_scene, begin_step, meet_conditions
    use memory_estimate, only: memory_type, estimate_memory, add_step_memory, memory_text
    use memory_refusal, only: check_reading, check_building, check_need, limit_text
    use output_plan, only: plan_type, new_plan
@@ -176,6 +176,7 @@ contains
       call check_allocation(status)
       do i = 1, size(simulation%model%steps)
          call begin_step(simulation, i, error)
+         if (.not. allocated(error) .and. i == 1) call meet_conditions(simulation, error)
          if (allocated(error)) return
          if (aloud) call report_step(simulation, i, log)
          call look_ahead(simulation, i, bodies, aloud, plan, preview)

@@ -68,8 +68,8 @@ contains
                - minval(model%nodes%x(:, :model%nodes%n), dim=2)
          call self%add('model', plural(model%nodes%n, 'node')//', ' &
                //plural(model%elements%n, 'element')//bodies_text(bodies)//', ' &
-               //plural(structure%map%n_freedoms, 'freedom')//'; extent '//short(box(1))//' by ' &
-               //short(box(2))//'; mass '//short(moving_mass(structure%map, &
+               //plural(structure%map%n_freedoms, 'freedom')//'; extent ' &
+               //extent_text(box)//'; mass '//short(moving_mass(structure%map, &
                diagonal_mass(structure))))
          kinetic = 0.0_wp
          do g = 1, size(structure%groups)
@@ -80,6 +80,15 @@ contains
                //short(strain)//', largest velocity '//short(maxval([0.0_wp, abs(state%v)])))
       end associate
    end subroutine explain_model
+
+   !> "2 by 1", and "by 3" where there is a third dimension.
+   pure function extent_text(box) result(text)
+      real(wp), intent(in) :: box(3)
+      character(len=:), allocatable :: text
+
+      text = short(box(1))//' by '//short(box(2))
+      if (box(3) > 0.0_wp) text = text//' by '//short(box(3))
+   end function extent_text
 
    pure function bodies_text(bodies) result(text)
       type(body_list_type), intent(in) :: bodies

@@ -2,19 +2,20 @@
 module explanation_lines
    use kinds, only: wp
    use text, only: to_text
+   use memory_shortage, only: check_allocation
    implicit none
    private
 
    public :: lines_type, short
 
    integer, parameter :: line_width = 100, label_width = 10
-   integer, parameter :: most_lines = 30
+   integer, parameter :: first_room = 30
 
-   !> The lines, at most so many.
+   !> The lines.
    type :: lines_type
       logical :: wanted = .false.
       integer :: n = 0
-      character(len=line_width) :: lines(most_lines)
+      character(len=line_width), allocatable :: lines(:)   !! grown by doubling
    contains
       procedure :: add
    end type lines_type
@@ -29,12 +30,13 @@ contains
 
       room = line_width - label_width
       first = 1
-      do while (first <= len_trim(text) .and. self%n < most_lines)
+      do while (first <= len_trim(text))
          last = len_trim(text)
          if (last - first + 1 > room) then
             last = first + index(text(first:first + room), ' ', back=.true.) - 2
             if (last < first) last = first + room - 1
          end if
+         call make_room(self)
          self%n = self%n + 1
          self%lines(self%n) = ''
          if (first == 1) self%lines(self%n) = label
@@ -46,6 +48,22 @@ contains
          end do
       end do
    end subroutine add
+
+   subroutine make_room(self)
+      class(lines_type), intent(inout) :: self
+      character(len=line_width), allocatable :: longer(:)
+      integer :: status
+
+      if (.not. allocated(self%lines)) then
+         allocate (self%lines(first_room), stat=status)
+         call check_allocation(status)
+      end if
+      if (self%n < size(self%lines)) return
+      allocate (longer(2*self%n), stat=status)
+      call check_allocation(status)
+      longer(:self%n) = self%lines
+      call move_alloc(longer, self%lines)
+   end subroutine make_room
 
    !> A number with four digits.
    pure function short(x) result(text)

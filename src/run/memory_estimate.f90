@@ -32,6 +32,8 @@ module memory_estimate
    real(wp), parameter :: library_bytes = 5.0e6_wp
    !> Values of an element or a node from which frames of stress are made.
    real(wp), parameter :: n_recovered = 14.0_wp
+   !> What a column of the history takes beside its values: its path, and HDF5 while it is open.
+   real(wp), parameter :: column_bytes = 2200.0_wp
 
    !> What is held while increments are taken, and the most that building the model took.
    type :: memory_type
@@ -146,10 +148,24 @@ contains
       end associate
       self%items(item_frames) = library_bytes + real_bytes*(n_values*n_frames + n_sums &
             + 8.0_wp*real(simulation%scene%system%structure%map%n_freedoms, wp))
-      n_columns = 3.0_wp*real(count(plan%node_print), wp) &
+      n_columns = node_columns(plan, simulation%scene%system%structure%map%freedom) &
             + 6.0_wp*real(count(plan%element_print), wp)
-      self%items(item_rows) = real_bytes*min(4096.0_wp*n_columns, 2.0_wp**21)
+      self%items(item_rows) = real_bytes*min(4096.0_wp*n_columns, max(2.0_wp**21, &
+            64.0_wp*n_columns)) + column_bytes*n_columns
    end subroutine add_output
+
+   !> Columns of the history that nodes have: one a freedom.
+   pure real(wp) function node_columns(plan, freedom)
+      type(plan_type), intent(in) :: plan
+      integer, intent(in) :: freedom(:, :)       !! (3, n_nodes)
+      integer :: node
+
+      node_columns = 0.0_wp
+      do node = 1, size(freedom, 2)
+         node_columns = node_columns + real(count(plan%node_print(:, node)) &
+               *count(freedom(:, node) > 0), wp)
+      end do
+   end function node_columns
 
    !> The matrices of the step at hand; what a step needs is kept for the next, so the most counts.
    subroutine add_step_memory(self, simulation, step)

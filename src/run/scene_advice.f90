@@ -168,16 +168,36 @@ contains
          bytes = output%n_frames*output%frame_bytes
          if (output%asked_frames .and. (bytes > many_bytes .or. (bytes > some_bytes .and. &
                output%n_frames > many_frames))) call self%add(to_text(output%n_frames, 6) &
-               //' frames of '//bytes_text(output%frame_bytes)//' are '//bytes_text(bytes) &
-               //': FREQUENCY='//to_text(ceiling(features%increments/good_frames)) &
-               //' on the FILE cards leaves some '//to_text(nint(good_frames)))
+               //' frames of '//bytes_text(output%frame_bytes)//' are '//bytes_text(bytes)//': ' &
+               //fewer_frames(features))
          rows = features%increments/output%print_every
-         bytes = 8.0_wp*rows*real(output%n_columns, wp)
+         bytes = column_bytes(rows)*real(output%n_columns, wp)
          if (bytes > many_bytes) call self%add(plural(output%n_columns, 'column') &
                //' of the history at '//to_text(rows, 6)//' times are '//bytes_text(bytes) &
                //': NSET= or ELSET= on the PRINT cards, or a larger FREQUENCY, leaves fewer')
       end associate
    end subroutine advise_output
+
+   !> Bytes of a column in the file: chunks of 512 rows, and what the library writes about it.
+   pure real(wp) function column_bytes(rows)
+      real(wp), intent(in) :: rows
+      real(wp), parameter :: chunk_rows = 512.0_wp, about_it = 2600.0_wp
+
+      column_bytes = 8.0_wp*chunk_rows*real(ceiling(rows/chunk_rows), wp) + about_it
+   end function column_bytes
+
+   !> What makes frames take less: where there are no more than enough of them, less in each.
+   pure function fewer_frames(features) result(advice)
+      type(feature_list_type), intent(in) :: features
+      character(len=:), allocatable :: advice
+
+      if (features%output%n_frames > 2.0_wp*good_frames .and. features%increments > 0.0_wp) then
+         advice = 'FREQUENCY='//to_text(ceiling(features%increments/good_frames)) &
+               //' on the FILE cards leaves some '//to_text(nint(good_frames))
+      else
+         advice = 'fewer fields on the FILE cards, or *OUTPUT, COMPRESS, make them smaller'
+      end if
+   end function fewer_frames
 
    !> Marks the pairs that may meet in the step in force: a row whose freedoms along its normal are
    !> all held at rest, before a wall at rest, keeps its gap.

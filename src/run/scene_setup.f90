@@ -30,7 +30,7 @@ module scene_setup
    implicit none
    private
 
-   public :: simulation_type, build_scene, begin_step, initial_motion, add_remark
+   public :: simulation_type, build_scene, begin_step, meet_conditions, initial_motion, add_remark
 
    !> All that a run computes with.
    type :: simulation_type
@@ -208,13 +208,14 @@ contains
       end do
    end subroutine put_values
 
-   !> Brings a step into force: conditions, loads, equations, profile, parameters. Errors: explicit
-   !> step over the critical one, explicit freedoms without mass.
+   !> Brings a step into force: conditions, loads, equations, profile, parameters. Of the motion
+   !> only the time counts, and velocities are given to it: a deck that is looked through, and a run
+   !> that is restored, have not moved. Errors: explicit step over the critical one, explicit
+   !> freedoms without mass.
    subroutine begin_step(self, i_step, error)
       type(simulation_type), intent(inout) :: self
       integer, intent(in) :: i_step
       type(error_type), allocatable, intent(out) :: error
-      real(wp), allocatable :: before(:)
       real(wp) :: t
 
       t = self%motion%motion%t
@@ -243,10 +244,6 @@ contains
          if (all(self%model%steps(:i_step - 1)%procedure == procedure_static)) call put_values( &
                system%structure, self%model%initial_velocities, self%motion%motion%v)
          call put_values(system%structure, step%initial_velocities, self%motion%motion%v)
-         before = self%motion%motion%d
-         call impose(system, self%motion%motion)
-         call check_jump(self%model, self%contact, self%scene, before, self%motion%motion, error)
-         if (allocated(error)) return
          call check_frequencies(self, step, error)
          if (allocated(error)) return
          call note_driven_mass(self, step)
@@ -261,6 +258,19 @@ contains
          call check_anchor(self%model, self%scene, step, error)
       end associate
    end subroutine begin_step
+
+   !> Moves what is prescribed to where a dynamic step in force wants it. The motion must be the
+   !> real one, that which the run has at this time: a node that jumps into its partner is an error.
+   subroutine meet_conditions(self, error)
+      type(simulation_type), intent(inout) :: self
+      type(error_type), allocatable, intent(out) :: error
+      real(wp), allocatable :: before(:)
+
+      if (self%scene%system%static) return
+      before = self%motion%motion%d
+      call impose(self%scene%system, self%motion%motion)
+      call check_jump(self%model, self%contact, self%scene, before, self%motion%motion, error)
+   end subroutine meet_conditions
 
    !> Orders the equations, unless nothing has changed that they depend on.
    subroutine number_anew(self)
@@ -327,7 +337,8 @@ contains
 
       associate (step => self%model%steps(i_step), system => self%scene%system)
          boundaries = step%boundaries
-         if (i_step == 1) boundaries = [self%model%boundaries, step%boundaries]
+         if (i_step == 1 .and. .not. step%new_boundaries) boundaries = [ &
+               self%model%boundaries, step%boundaries]
          span = [t, merge(1.0_wp, step%duration, step%procedure == procedure_frequency)]
          call begin_motions(system%motions, boundaries, system%structure%map%freedom, &
                self%model%amplitudes, .not. step%new_boundaries, span, system%static)

@@ -1,6 +1,7 @@
 !> The run: deck, scene, files, the steps one after the other, and how it ended.
 module simulation
    use errors, only: error_type, status_file, status_interrupted
+   use text, only: shell_word
    use stop_signals, only: catch_signals
    use file_calls, only: ignore_signals
    use part_file, only: check_output
@@ -53,7 +54,7 @@ contains
 
       associate (cost => simulation%scene%system%cost)
          call start_clock(cost)
-         output%log%terminal = .not. command%json
+         output%log%terminal = .not. command%quiet
          call catch_signals()
          call ignore_signals([broken_pipe, file_too_large])
          call start_publishing(output%publishing)
@@ -142,11 +143,11 @@ contains
 
       if (.not. allocated(error)) return
       if (error%status /= status_interrupted) return
-      error%message = error%message//new_line('a')//'  to go on: carom run '//command%deck &
-            //' --restart '//command%output
+      error%message = error%message//new_line('a')//'  to go on: carom run ' &
+            //shell_word(command%deck)//' --restart '//shell_word(command%output)
       do i = 1, size(command%definitions)
-         error%message = error%message//' --define '//command%definitions(i)%name//'=' &
-               //command%definitions(i)%value
+         error%message = error%message//' --define '//shell_word(command%definitions(i)%name &
+               //'='//command%definitions(i)%value)
       end do
    end subroutine tell_how_to_go_on
 

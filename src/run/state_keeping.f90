@@ -10,7 +10,6 @@ module state_keeping
    use result_extents, only: extents_type, measure_results
    use publishing, only: is_due, publish_now
    use stop_request, only: start_looking
-   use stop_request, only: start_looking
    use scene_setup, only: simulation_type
    use course, only: course_type
    use run_state, only: collect_state
@@ -48,6 +47,8 @@ contains
             call output%tally%pass_state(archive, simulation)
             call cost%pass_times(archive)
             call write_state(output%results%restart, output%results%file, archive, error)
+            ! it is worth a file where nothing else is recorded before the modes
+            output%results%has_records = output%results%has_records .or. .not. allocated(error)
          end if
          call leave(cost, outer)
       end associate
@@ -70,14 +71,11 @@ contains
          end if
          if (output%state_due) then
             if (.not. output%watch%pace%fresh) return
-            if (.not. output%watch%pace%fresh) return
             if (.not. is_due(output%publishing, 0.0_wp)) return
             start = seconds_now()
             call keep_restart_state(simulation, course, output, error)
             if (.not. allocated(error)) call publish_now(output%publishing, output%results, &
                   output%log, cost, error, start)
-            output%watch%saving = output%publishing%price
-            call start_looking(output%watch)
             output%watch%saving = output%publishing%price
             call start_looking(output%watch)
          else

@@ -6,7 +6,7 @@ module step_start
    use energy_ledger, only: open_ledger, close_increment
    use contact_impulses, only: restart_acceleration
    use anchored_impacts, only: lift_anchor
-   use scene_setup, only: simulation_type, begin_step
+   use scene_setup, only: simulation_type, begin_step, meet_conditions
    implicit none
    private
 
@@ -20,12 +20,22 @@ contains
       integer, intent(in) :: i_step
       type(error_type), allocatable, intent(out) :: error
       real(wp), allocatable :: load_before(:)
+      logical, allocatable :: held_before(:)
       real(wp) :: before
 
       before = simulation%scene%ledger%total
-      if (i_step > 1) load_before = load_now(simulation)
+      if (i_step > 1) then
+         load_before = load_now(simulation)
+         held_before = simulation%held
+      end if
       call begin_step(simulation, i_step, error)
       if (allocated(error)) return
+      call meet_conditions(simulation, error)
+      if (allocated(error)) return
+      if (simulation%scene%system%static) then
+         simulation%motion%motion%v = 0.0_wp
+         simulation%motion%motion%a = 0.0_wp
+      end if
       call lift_anchor(simulation%scene, simulation%motion, error)
       if (allocated(error)) return
       associate (scene => simulation%scene)
@@ -41,7 +51,7 @@ contains
                   simulation%model%steps(i_step)%dt, error)
             if (allocated(error)) return
          else if (i_step > 1 .and. .not. scene%system%static) then
-            call meet_new_load(simulation, load_before, error)
+            call go_on(simulation, load_before, held_before, error)
             if (allocated(error)) return
          end if
          if (i_step == 1) call close_increment(scene%ledger, scene%system, &
@@ -57,19 +67,21 @@ contains
       force = load_at(simulation%scene%system%loads, size(force), simulation%motion%motion%t)
    end function load_now
 
-   !> A load that jumps where one dynamic step goes on from another changes the acceleration at
-   !> once; carried on, the old one would take half of the jump off the first increment.
-   subroutine meet_new_load(simulation, load_before, error)
+   !> A load that jumps where one dynamic step goes on from another, or a support that goes or
+   !> comes, changes the acceleration at once; carried on, the old one would take half of the jump
+   !> off the first increment.
+   subroutine go_on(simulation, load_before, held_before, error)
       type(simulation_type), intent(inout) :: simulation
-      real(wp), intent(in) :: load_before(:)
+      real(wp), intent(in) :: load_before(:)     !! (n_freedoms) at this time, in the step before
+      logical, intent(in) :: held_before(:)      !! (n_freedoms) prescribed in it
       type(error_type), allocatable, intent(out) :: error
       real(wp), parameter :: round_off = 1.0e-12_wp
 
-      if (maxval(abs(load_now(simulation) - load_before)) <= &
-            round_off*maxval(abs(load_before))) return
+      if (all(held_before .eqv. simulation%held) .and. maxval(abs(load_now(simulation) &
+            - load_before)) <= round_off*maxval(abs(load_before))) return
       call restart_acceleration(simulation%scene, simulation%motion, error)
       simulation%motion%fresh = .true.
-   end subroutine meet_new_load
+   end subroutine go_on
 
    !> A dynamic step finds its own acceleration unless it goes on from another dynamic step.
    pure function starts_anew(simulation, i_step) result(anew)
