@@ -215,7 +215,12 @@ contains
             psi = residual(scene%system, fixed, from%motion%history, to%motion)
             call prepare_motion(scene%system, dt, 0.25_wp, to%motion%d, from%motion%history, error)
          end if
-         if (allocated(error)) return
+         if (allocated(error)) then
+            if (scene%rows%n > 0) error%message = error%message//new_line('a')//'  (contact does ' &
+                  //'not hold a body at rest before it is pressed: springs hold it, or a dynamic ' &
+                  //'step with *DAMPING brings it to rest)'
+            return
+         end if
          delta = solve_motion(scene%system, psi)
          call add_contact_forces(scene, step, from, to, delta, error)
          if (allocated(error)) return

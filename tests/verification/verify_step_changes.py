@@ -147,6 +147,17 @@ def check_static_after(checks):
     checks.at_most(np.max(np.abs(run['energy/balance_error'])), 1e-12, 'static after motion: balance')
 
 
+def check_resting(checks):
+    """What only contact would hold cannot be found at rest; the message says why."""
+    run = run_deck('*NODE\n1, 0, 0\n*ELEMENT, TYPE=MASS, ELSET=m\n1, 1\n*MASS, ELSET=m\n2\n'
+                   '*SURFACE, NAME=ball, TYPE=NODE\n1\n*RIGID SURFACE, NAME=floor, TYPE=PLANE\n'
+                   '0, 0\n0, 1\n*SURFACE INTERACTION, NAME=hit\n*IMPACT\n'
+                   '*CONTACT PAIR, INTERACTION=hit\nball, floor\n*BOUNDARY\n1, 1\n1, 3\n'
+                   '*STEP\n*STATIC\n1, 1\n*CLOAD\n1, 2, -1\n*END STEP\n', expect_status=4)
+    checks.true('singular system: node 1, freedom 2' in run.text
+                and 'contact does not hold a body at rest' in run.text, 'at rest on a floor alone')
+
+
 def check_modes(checks):
     """Modes about a plastic state have the stresses of their shapes, as those of an elastic one."""
     plastic, elastic = run_deck(SQUARE), run_deck(SQUARE.replace('10, 0\n20, 0.1', '1e9, 0\n2e9, 0.1'))
@@ -216,7 +227,7 @@ def check_tolerance(checks):
 def main():
     checks = Checks()
     for check in (check_pressed, check_jump, check_release, check_goes_on, check_static_after,
-                  check_modes, check_impulses, check_kept, check_tolerance):
+                  check_resting, check_modes, check_impulses, check_kept, check_tolerance):
         check(checks)
     checks.finish()
 
