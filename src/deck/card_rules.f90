@@ -5,7 +5,7 @@ module card_rules
    use places, only: place_type, source_type, fail_at
    use words, only: word_length, squeezed, find_word, advice
    use foreign_words, only: keyword_cure
-   use cards, only: card_type, parameter_type, has_parameter
+   use cards, only: card_type, parameter_type, has_parameter, parameter_index
    implicit none
    private
 
@@ -258,7 +258,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       character(len=*), parameter :: optional_data(*) = [character(len=word_length) :: &
             'STATIC', 'BASE MOTION', 'SOLID SECTION', 'HEADING', 'PARAMETER']
-      character(len=:), allocatable :: usage
+      character(len=:), allocatable :: usage, cure
 
       usage = usage_of(card%rule)
       if (card%keyword == 'NSET' .and. has_parameter(card, 'ELSET')) usage = '-'
@@ -267,10 +267,23 @@ contains
                ' takes no data lines', cure='remove the line, or put its keyword before it')
       end if
       if (usage == '-' .or. card%last >= card%first) return
-      if (find_word(card%keyword, optional_data) > 0) return
-      call fail_at(error, source, card%place, name_of(card%rule)// &
-            ' has no data lines', cure='a line is: '//usage)
+      if (find_word(card%keyword, optional_data) > 0 .or. removes_all(card)) return
+      cure = 'a line is: '//usage
+      if (find_word('OP', parameter_names(card%rule)) > 0) cure = cure &
+            //'; OP=NEW without lines removes those before'
+      call fail_at(error, source, card%place, name_of(card%rule)//' has no data lines', cure=cure)
    end subroutine check_data
+
+   !> OP=NEW, which needs no data lines: what was before is removed, nothing comes in its place.
+   pure function removes_all(card) result(removes)
+      type(card_type), intent(in) :: card
+      logical :: removes
+      integer :: i
+
+      removes = .false.
+      i = parameter_index(card, 'OP')
+      if (i > 0) removes = squeezed(card%parameters(i)%value) == 'NEW'
+   end function removes_all
 
    !> The k-th of the parts between semicolons; the last one keeps its own.
    pure function part(rule, k) result(string)
