@@ -38,7 +38,7 @@ module card_rules
          'DASHPOT;model;ELSET=!;the freedoms (none for DASHPOTA), then the coefficient', &
          'MASS;model;ELSET=!;mass', &
          'ELEMENT GROUP;model;ELSET=!/SCHEME=!/MASS=;-', &
-         'AMPLITUDE;model;NAME=!/TIME=;up to 4 pairs of time, value', &
+         'AMPLITUDE;model;NAME=!/TIME=/DEFINITION=;up to 4 pairs of time, value', &
          'BOUNDARY;both;AMPLITUDE=/TYPE=/OP=;node or set, first dof[, last dof[, value]]', &
          'BASE MOTION;step;AMPLITUDE=!/DOF=!;scale', &
          'INITIAL CONDITIONS;both;TYPE=!;node or set, dof, value', &
