@@ -39,7 +39,8 @@ module card_rules
          'MASS;model;ELSET=!;mass', &
          'ELEMENT GROUP;model;ELSET=!/SCHEME=!/MASS=;-', &
          'AMPLITUDE;model;NAME=!/TIME=/DEFINITION=;up to 4 pairs of time, value', &
-         'BOUNDARY;both;AMPLITUDE=/TYPE=/OP=;node or set, first dof[, last dof[, value]]', &
+         'BOUNDARY;both;AMPLITUDE=/TYPE=/OP=;node or set, first dof[, last dof[, value]], or a '// &
+         'word such as PINNED in the place of the freedoms', &
          'BASE MOTION;step;AMPLITUDE=!/DOF=!;scale', &
          'INITIAL CONDITIONS;both;TYPE=!;node or set, dof, value', &
          'EQUATION;model;;number of terms, then up to 4 triples of node, dof, coefficient a line', &

@@ -1,4 +1,5 @@
-"""Loads and supports that go with OP=NEW, without data lines, beside the exact answers.
+"""Loads and supports that go with OP=NEW, without data lines, and supports that are words, beside
+the exact answers.
 
 Two masses of 1 on a spring of 2: the first swings with omega^2 = 2 while the second is held, both
 with omega^2 = 4 against each other when it is not. The trapezoidal rule turns (u, v/omega) by
@@ -102,8 +103,27 @@ def check_pressure(checks):
     checks.close(run['history/node_3/U1'], [0.0, 0.05, 0.0], 1e-15, 'pressure that goes')
 
 
+def check_words(checks):
+    """A square in tension on planes of symmetry, and one that is held all around."""
+    soft = SQUARE[:SQUARE.index('*BOUNDARY')].replace('100, 0\n', '100, 0.25\n')
+    pull = step('STATIC, DIRECT', '1, 1', '*DLOAD\n1, P2, -5\n')
+    words = '*NSET, NSET=left\n1, 4\n*BOUNDARY\nleft, XSYMM\n1, ysymm\n2, YSYMM\n'
+    run = run_deck(soft + words + pull)
+    for i, u in enumerate(([0, 0], [0.05, 0], [0.05, -0.0125], [0, -0.0125]), 1):
+        checks.close([run[f'history/node_{i}/U{k}'][-1] for k in (1, 2)], u, 1e-15,
+                     f'tension between planes of symmetry: node {i}')
+    for word in ('ENCASTRE', 'Pinned'):
+        run = run_deck(soft + f'*BOUNDARY\n1, {word}\n4, {word}\n' + pull)
+        same = run_deck(soft + '*BOUNDARY\n1, 1, 2\n4, 1, 2\n' + pull)
+        for i in range(1, 5):
+            checks.close([run[f'history/node_{i}/U{k}'][-1] for k in (1, 2)],
+                         [same[f'history/node_{i}/U{k}'][-1] for k in (1, 2)], 0.0,
+                         f'{word}: node {i} as with 1, 2')
+
+
 checks = Checks()
 check_masses(checks)
 check_first_step(checks)
 check_pressure(checks)
+check_words(checks)
 checks.finish()
