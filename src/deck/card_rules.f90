@@ -66,9 +66,9 @@ module card_rules
          'nx, ny, nz; or CENTRIF, omega squared, x, y, z, ax, ay, az', &
          'NODE PRINT;step;NSET=/FREQUENCY=/TOTALS=;U, V, A, RF', &
          'NODE FILE;step;~NSET=/FREQUENCY=/OUTPUT=;U, V, A, RF', &
-         'EL PRINT;step;ELSET=/FREQUENCY=;S, E, PEEQ, ENER', &
+         'EL PRINT;step;ELSET=/FREQUENCY=/TOTALS=;S, E, PEEQ, ENER', &
          'EL FILE;step;~ELSET=/FREQUENCY=/OUTPUT=;S, E, PEEQ, ENER', &
-         'CONTACT PRINT;step;FREQUENCY=;CF, CDIS', &
+         'CONTACT PRINT;step;FREQUENCY=/SLAVE=/MASTER=;CF, CDIS', &
          'CONTACT FILE;step;FREQUENCY=;CF, CDIS', &
          'ENERGY PRINT;step;FREQUENCY=/LIMIT=;-', &
          'RESTART;any;WRITE/FREQUENCY=/OVERLAY/READ/STEP=/INC=;-', &
