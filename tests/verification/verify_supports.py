@@ -121,9 +121,38 @@ def check_words(checks):
                          f'{word}: node {i} as with 1, 2')
 
 
+def check_lost_starts(checks):
+    """An initial condition of a supported freedom is noted when it changes nothing, only then."""
+    still, static = dynamic(''), step('STATIC, DIRECT', '1, 1', '')
+    moved = '*AMPLITUDE, NAME=a\n0, 1, 9, 0\n*BOUNDARY, TYPE={}, AMPLITUDE=a\n2, 1, 1, 0.5\n'
+    rate = '*BOUNDARY, TYPE=VELOCITY\n2, 1, 1, 0.5\n'
+    push = dynamic('*BOUNDARY, TYPE=ACCELERATION\n2, 1, 1, 0.5\n')
+    held = '*BOUNDARY\n2, 1\n'
+    masses = MASSES[:MASSES.index('*BOUNDARY')]
+    for kind, name, supports, steps in (
+            ('VELOCITY', 'held', held, still), ('DISPLACEMENT', 'held', held, still),
+            ('VELOCITY', 'held, static first', held, static + still),
+            ('DISPLACEMENT', 'held, static first', held, static + still),
+            ('DISPLACEMENT', 'moved, static first', moved.format('DISPLACEMENT'), static),
+            ('VELOCITY', 'free', '', still), ('DISPLACEMENT', 'free', '', still),
+            ('VELOCITY', 'dropped', held, dynamic('*BOUNDARY, OP=NEW\n')),
+            ('VELOCITY', 'moved', moved.format('DISPLACEMENT'), still),
+            ('VELOCITY', 'by rate', rate, still), ('DISPLACEMENT', 'by rate', rate, still),
+            ('VELOCITY', 'by acceleration', moved.format('ACCELERATION'), still),
+            ('VELOCITY', 'by acceleration later', '*BOUNDARY\n1, 1\n', static + push)):
+        start = f'*INITIAL CONDITIONS, TYPE={kind}\n2, 1, 0.25\n'
+        run, without = (run_deck(masses + supports + text + steps) for text in (start, ''))
+        same = all(np.array_equal(run[f'history/node_{i}/{q}1'], without[f'history/node_{i}/{q}1'])
+                   for i in (1, 2) for q in 'UV')
+        noted = 'from here on has no effect' in run.path.with_suffix('.log').read_text()
+        checks.true(noted == same, f'initial {kind.lower()}, {name}: '
+                    f'{"no effect" if same else "an effect"}, {"noted" if noted else "not noted"}')
+
+
 checks = Checks()
 check_masses(checks)
 check_first_step(checks)
 check_pressure(checks)
 check_words(checks)
+check_lost_starts(checks)
 checks.finish()
