@@ -58,13 +58,12 @@ contains
       end do
    end function n_values
 
-   !> Brings the conditions of a step into force; those of steps before hold where they came to.
+   !> Brings the conditions of a step into force; those of steps before go on.
    subroutine begin_step(held, model, s)
       type(held_type), intent(inout) :: held
       type(model_type), intent(in) :: model
       integer, intent(in) :: s
 
-      where (held%motion > 0) held%motion = motion_displacement
       if (model%steps(s)%new_boundaries) then
          held%motion = 0
       else if (s == 1) then

@@ -139,6 +139,7 @@ def check_lost_starts(checks):
             ('VELOCITY', 'moved', moved.format('DISPLACEMENT'), still),
             ('VELOCITY', 'by rate', rate, still), ('DISPLACEMENT', 'by rate', rate, still),
             ('VELOCITY', 'by acceleration', moved.format('ACCELERATION'), still),
+            ('VELOCITY', 'by rate, static first', '', step('STATIC, DIRECT', '1, 1', rate) + still),
             ('VELOCITY', 'by acceleration later', '*BOUNDARY\n1, 1\n', static + push)):
         start = f'*INITIAL CONDITIONS, TYPE={kind}\n2, 1, 0.25\n'
         run, without = (run_deck(masses + supports + text + steps) for text in (start, ''))
