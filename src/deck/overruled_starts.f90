@@ -1,4 +1,4 @@
-!> Initial conditions that have no effect because *BOUNDARY has their freedoms at that time.
+!> Initial conditions that have no effect because `*BOUNDARY` has their freedoms at that time.
 module overruled_starts
    use kinds, only: wp
    use memory_shortage, only: check_allocation

@@ -177,7 +177,8 @@ contains
                side//' has no effect here: every contact pair has its columns'))
       else
          call fail_at(error, model%source, parameter_place(card, side), &
-               'no contact pair has this '//side//': '//trim(name), cure=advice(name, names))
+               'no contact pair has this '//side//': '//trim(name), &
+               cure='write a surface of a *CONTACT PAIR; '//advice(name, names))
       end if
    end subroutine note_surface
 
