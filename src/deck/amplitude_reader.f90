@@ -8,8 +8,9 @@ module amplitude_reader
    use histories, only: time_step, time_total
    use model, only: model_type
    use cards, only: deck_type, card_type, count_cards, get_word, get_name_parameter, parameter_place
+   use cards, only: parameter_index
    use fields, only: fields_type, split_line, check_count, field_place, get_real
-   use words, only: word_length, advice
+   use words, only: word_length, squeezed, advice
    implicit none
    private
 
@@ -57,6 +58,8 @@ contains
          call model%amplitude_of%insert(amplitude%name, n)
          call get_word(card, 'TIME', times, choice, model%source, error)
          if (allocated(error)) return
+         call check_definition(model, card, error)
+         if (allocated(error)) return
          amplitude%time = time_step
          if (choice == 2) amplitude%time = time_total
          amplitude%place = card%place
@@ -74,6 +77,22 @@ contains
       model%amplitudes(n)%t = model%amplitudes(n)%t(:k)
       model%amplitudes(n)%a = model%amplitudes(n)%a(:k)
    end subroutine read_amplitude
+
+   !> DEFINITION: other programs know curves by formulas too.
+   subroutine check_definition(model, card, error)
+      type(model_type), intent(in) :: model
+      type(card_type), intent(in) :: card
+      type(error_type), allocatable, intent(out) :: error
+      integer :: i
+
+      i = parameter_index(card, 'DEFINITION')
+      if (i == 0) return
+      if (squeezed(card%parameters(i)%value) == 'TABULAR') return
+      call fail_at(error, model%source, card%parameters(i)%place, &
+            "unknown value '"//card%parameters(i)%value//"' of DEFINITION", cure='write the ' &
+            //'curve by its points, pairs of time, value with straight lines between them; ' &
+            //'allowed: TABULAR')
+   end subroutine check_definition
 
    !> Up to four pairs of time and value; k counts those of the amplitude.
    subroutine read_pairs(model, n, k, fields, error)

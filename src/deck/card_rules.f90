@@ -5,7 +5,7 @@ module card_rules
    use places, only: place_type, source_type, fail_at
    use words, only: word_length, squeezed, find_word, advice
    use foreign_words, only: keyword_cure
-   use cards, only: card_type, parameter_type, has_parameter
+   use cards, only: card_type, parameter_type, has_parameter, parameter_index
    implicit none
    private
 
@@ -38,8 +38,9 @@ module card_rules
          'DASHPOT;model;ELSET=!;the freedoms (none for DASHPOTA), then the coefficient', &
          'MASS;model;ELSET=!;mass', &
          'ELEMENT GROUP;model;ELSET=!/SCHEME=!/MASS=;-', &
-         'AMPLITUDE;model;NAME=!/TIME=;up to 4 pairs of time, value', &
-         'BOUNDARY;both;AMPLITUDE=/TYPE=/OP=;node or set, first dof[, last dof[, value]]', &
+         'AMPLITUDE;model;NAME=!/TIME=/DEFINITION=;up to 4 pairs of time, value', &
+         'BOUNDARY;both;AMPLITUDE=/TYPE=/OP=;node or set, first dof[, last dof[, value]], or a '// &
+         'word such as PINNED in the place of the freedoms', &
          'BASE MOTION;step;AMPLITUDE=!/DOF=!;scale', &
          'INITIAL CONDITIONS;both;TYPE=!;node or set, dof, value', &
          'EQUATION;model;;number of terms, then up to 4 triples of node, dof, coefficient a line', &
@@ -65,9 +66,9 @@ module card_rules
          'nx, ny, nz; or CENTRIF, omega squared, x, y, z, ax, ay, az', &
          'NODE PRINT;step;NSET=/FREQUENCY=/TOTALS=;U, V, A, RF', &
          'NODE FILE;step;~NSET=/FREQUENCY=/OUTPUT=;U, V, A, RF', &
-         'EL PRINT;step;ELSET=/FREQUENCY=;S, E, PEEQ, ENER', &
+         'EL PRINT;step;ELSET=/FREQUENCY=/TOTALS=;S, E, PEEQ, ENER', &
          'EL FILE;step;~ELSET=/FREQUENCY=/OUTPUT=;S, E, PEEQ, ENER', &
-         'CONTACT PRINT;step;FREQUENCY=;CF, CDIS', &
+         'CONTACT PRINT;step;FREQUENCY=/SLAVE=/MASTER=;CF, CDIS', &
          'CONTACT FILE;step;FREQUENCY=;CF, CDIS', &
          'ENERGY PRINT;step;FREQUENCY=/LIMIT=;-', &
          'RESTART;any;WRITE/FREQUENCY=/OVERLAY/READ/STEP=/INC=;-', &
@@ -258,7 +259,7 @@ contains
       type(error_type), allocatable, intent(out) :: error
       character(len=*), parameter :: optional_data(*) = [character(len=word_length) :: &
             'STATIC', 'BASE MOTION', 'SOLID SECTION', 'HEADING', 'PARAMETER']
-      character(len=:), allocatable :: usage
+      character(len=:), allocatable :: usage, cure
 
       usage = usage_of(card%rule)
       if (card%keyword == 'NSET' .and. has_parameter(card, 'ELSET')) usage = '-'
@@ -267,10 +268,23 @@ contains
                ' takes no data lines', cure='remove the line, or put its keyword before it')
       end if
       if (usage == '-' .or. card%last >= card%first) return
-      if (find_word(card%keyword, optional_data) > 0) return
-      call fail_at(error, source, card%place, name_of(card%rule)// &
-            ' has no data lines', cure='a line is: '//usage)
+      if (find_word(card%keyword, optional_data) > 0 .or. removes_all(card)) return
+      cure = 'a line is: '//usage
+      if (find_word('OP', parameter_names(card%rule)) > 0) cure = cure &
+            //'; OP=NEW without lines removes those before'
+      call fail_at(error, source, card%place, name_of(card%rule)//' has no data lines', cure=cure)
    end subroutine check_data
+
+   !> OP=NEW, which needs no data lines: what was before is removed, nothing comes in its place.
+   pure function removes_all(card) result(removes)
+      type(card_type), intent(in) :: card
+      logical :: removes
+      integer :: i
+
+      removes = .false.
+      i = parameter_index(card, 'OP')
+      if (i > 0) removes = squeezed(card%parameters(i)%value) == 'NEW'
+   end function removes_all
 
    !> The k-th of the parts between semicolons; the last one keeps its own.
    pure function part(rule, k) result(string)

@@ -2,18 +2,19 @@
 module condition_reader
    use kinds, only: wp
    use errors, only: error_type
-   use places, only: fail_at, line_text
+   use places, only: source_type, fail_at, line_text
    use histories, only: boundary_type, nodal_value_type
    use histories, only: motion_displacement, motion_velocity, motion_acceleration
    use model, only: model_type
    use model_building, only: append, fit
    use integer_map, only: integer_map_type
    use cards, only: deck_type, card_type, get_word, has_parameter, parameter_place
-   use fields, only: fields_type, split_line, check_count, field_place, is_given, get_real
+   use fields, only: fields_type, split_line, check_count, field_place, field_text, is_given
+   use fields, only: get_real
    use amplitude_reader, only: find_amplitude
    use set_reader, only: find_nodes
    use spring_reader, only: get_dof
-   use words, only: word_length
+   use words, only: word_length, find_word, advice
    use text, only: to_text
    implicit none
    private
@@ -22,6 +23,10 @@ module condition_reader
 
    character(len=word_length), parameter :: ic_types(*) = [character(len=word_length) :: &
          'DISPLACEMENT', 'VELOCITY']
+   !> Supports by name, and the first and last freedom of each.
+   character(len=word_length), parameter :: supports(*) = [character(len=word_length) :: &
+         'ENCASTRE', 'PINNED', 'XSYMM', 'YSYMM', 'ZSYMM']
+   integer, parameter :: support_range(2, 5) = reshape([1, 3, 1, 3, 1, 1, 2, 2, 3, 3], [2, 5])
 
 contains
 
@@ -95,22 +100,13 @@ contains
       if (allocated(error)) return
       call find_nodes(model, fields, 1, nodes, error)
       if (allocated(error)) return
-      call get_dof(fields, 2, first, model%source, error)
-      if (allocated(error)) return
-      last = first
-      if (is_given(fields, 3)) call get_dof(fields, 3, last, model%source, error)
-      if (allocated(error)) return
-      if (last < first) then
-         call fail_at(error, model%source, field_place(fields, 3), &
-               'the last freedom is below the first', &
-               cure='a line is: node or set, first dof[, last dof[, value]]')
-         return
-      end if
       boundary%value = 0.0_wp
-      if (is_given(fields, 4)) then
-         call get_real(fields, 4, 'value', boundary%value, model%source, error)
-         if (allocated(error)) return
+      if (is_word(field_text(fields, 2))) then
+         call read_support(fields, first, last, model%source, error)
+      else
+         call read_range(fields, first, last, boundary%value, model%source, error)
       end if
+      if (allocated(error)) return
       do i = 1, size(nodes)
          do dof = first, last
             boundary%node = nodes(i)
@@ -120,6 +116,69 @@ contains
          end do
       end do
    end subroutine read_boundary
+
+   !> First dof[, last dof[, value]].
+   subroutine read_range(fields, first, last, value, source, error)
+      type(fields_type), intent(in) :: fields
+      integer, intent(out) :: first, last
+      real(wp), intent(inout) :: value           !! stays where the line has none
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+
+      call get_dof(fields, 2, first, source, error)
+      last = first
+      if (allocated(error)) return
+      if (is_given(fields, 3)) call get_dof(fields, 3, last, source, error)
+      if (allocated(error)) return
+      if (last < first) then
+         call fail_at(error, source, field_place(fields, 3), &
+               'the last freedom is below the first', &
+               cure='a line is: node or set, first dof[, last dof[, value]]')
+         return
+      end if
+      if (is_given(fields, 4)) call get_real(fields, 4, 'value', value, source, error)
+   end subroutine read_range
+
+   !> A word in the place of the freedoms.
+   subroutine read_support(fields, first, last, source, error)
+      type(fields_type), intent(in) :: fields
+      integer, intent(out) :: first, last
+      type(source_type), intent(in) :: source
+      type(error_type), allocatable, intent(out) :: error
+      character(len=word_length), parameter :: against(*) = [character(len=word_length) :: &
+            'XASYMM', 'YASYMM', 'ZASYMM']
+      character(len=*), parameter :: cures(*) = ['a line with the freedoms 2, 3 ', &
+            'lines with 1 and with 3       ', 'a line with the freedoms 1, 2 ']
+      integer :: i
+
+      first = 0
+      last = 0
+      i = find_word(field_text(fields, 2), against)
+      if (i > 0) then
+         call fail_at(error, source, field_place(fields, 2), trim(against(i))// &
+               ' is not known: an antisymmetric plane holds the freedoms along it', &
+               cure='write '//trim(cures(i)))
+         return
+      end if
+      i = find_word(field_text(fields, 2), supports)
+      if (i == 0) then
+         call fail_at(error, source, field_place(fields, 2), "unknown support '"// &
+               field_text(fields, 2)//"'", cure='write the freedoms 1, 2, 3, or a word; '// &
+               advice(field_text(fields, 2), supports))
+         return
+      end if
+      first = support_range(1, i)
+      last = support_range(2, i)
+      call check_count(fields, 2, source, error)
+   end subroutine read_support
+
+   !> Whether a field holds a word, not a number.
+   pure function is_word(text) result(word)
+      character(len=*), intent(in) :: text
+      logical :: word
+
+      word = scan(text, 'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ') == 1
+   end function is_word
 
    !> Appends a condition; one said before is left out if the same, an error if it contradicts.
    subroutine add_boundary(list, n, given, model, boundary, error)

@@ -25,6 +25,7 @@ module deck_reader
    use condition_reader, only: read_boundaries, read_initial_conditions
    use equation_reader, only: read_equations, check_equations
    use step_reader, only: read_steps
+   use overruled_starts, only: note_overruled_starts
    implicit none
    private
 
@@ -202,6 +203,7 @@ contains
       if (allocated(error)) return
       call read_steps(model, deck, error)
       if (allocated(error)) return
+      call note_overruled_starts(model)
       call check_equations(model, error)
    end subroutine read_history
 

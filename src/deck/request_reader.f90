@@ -140,19 +140,72 @@ contains
             'YES', 'ONLY', 'NO']
       character(len=word_length), parameter :: outputs(*) = [character(len=word_length) :: &
             '2D', '3D']
+      character(len=:), allocatable :: columns
       integer :: choice
 
+      columns = 'each element has its columns'
+      if (card%keyword == 'NODEPRINT') columns = 'each node has its columns, sum them'
       call get_word(card, 'TOTALS', totals, choice, model%source, error)
       if (allocated(error)) return
       if (choice == 1 .or. choice == 2) call add_note(model%notes, note_at(model%source, &
-            parameter_place(card, 'TOTALS'), &
-            'TOTALS has no effect here: each node has its columns, sum them'))
+            parameter_place(card, 'TOTALS'), 'TOTALS has no effect here: '//columns))
       call get_word(card, 'OUTPUT', outputs, choice, model%source, error)
       if (allocated(error)) return
       if (choice == 2) call add_note(model%notes, note_at(model%source, &
             parameter_place(card, 'OUTPUT'), &
             'OUTPUT=3D has no effect here: plane elements stay plane in the result'))
+      if (has_parameter(card, 'SLAVE')) call note_surface(model, card, 'SLAVE', &
+            slaves(model), error)
+      if (allocated(error)) return
+      if (has_parameter(card, 'MASTER')) call note_surface(model, card, 'MASTER', &
+            masters(model), error)
    end subroutine note_habits
+
+   !> A surface that *CONTACT PRINT names must be that of a pair; the other pairs are recorded too.
+   subroutine note_surface(model, card, side, names, error)
+      type(model_type), intent(inout) :: model
+      type(card_type), intent(in) :: card
+      character(len=*), intent(in) :: side       !! SLAVE or MASTER
+      character(len=*), intent(in) :: names(:)   !! of that side of each pair
+      type(error_type), allocatable, intent(out) :: error
+      character(len=name_length) :: name
+
+      call get_name_parameter(card, side, name, model%source, error)
+      if (allocated(error)) return
+      if (any(names == name)) then
+         call add_note(model%notes, note_at(model%source, parameter_place(card, side), &
+               side//' has no effect here: every contact pair has its columns'))
+      else
+         call fail_at(error, model%source, parameter_place(card, side), &
+               'no contact pair has this '//side//': '//trim(name), &
+               cure='write a surface of a *CONTACT PAIR; '//advice(name, names))
+      end if
+   end subroutine note_surface
+
+   !> The slave of each contact pair.
+   pure function slaves(model) result(names)
+      type(model_type), intent(in) :: model
+      character(len=name_length) :: names(size(model%pairs))
+
+      names = model%surfaces(model%pairs%contactor)%name
+   end function slaves
+
+   !> The master of each contact pair.
+   pure function masters(model) result(names)
+      type(model_type), intent(in) :: model
+      character(len=name_length) :: names(size(model%pairs))
+      integer :: p
+
+      do p = 1, size(names)
+         associate (pair => model%pairs(p))
+            if (pair%target > 0) then
+               names(p) = model%surfaces(pair%target)%name
+            else
+               names(p) = model%rigid_surfaces(pair%rigid_target)%name
+            end if
+         end associate
+      end do
+   end function masters
 
    !> The kind of request a keyword makes, 0 if none.
    pure function kind_of(keyword) result(kind)

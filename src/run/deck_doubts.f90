@@ -7,6 +7,7 @@ module deck_doubts
    use mesh, only: is_solid_kind, solid_plane, solid_topology, solid_reduced, plane_stress, &
          tri3, quad4
    use element_types, only: kind_name
+   use steps, only: procedure_frequency
    use model, only: model_type
    use continuum_bodies, only: body_list_type
    use contact_outlook, only: side_spacing
@@ -44,12 +45,13 @@ contains
       call doubt_restitution(simulation, bodies)
    end subroutine doubt_deck
 
-   !> A deck that asks for nothing.
+   !> A deck that asks for nothing; modes are written unasked.
    subroutine doubt_output(simulation)
       type(simulation_type), intent(inout) :: simulation
       integer :: s
 
       associate (steps => simulation%model%steps)
+         if (any(steps%procedure == procedure_frequency)) return
          do s = 1, size(steps)
             if (size(steps(s)%requests) > 0) return
          end do

@@ -42,6 +42,21 @@ GOOD_DECK = """\
 *END STEP
 """
 
+# Cards of other programs, and words of what to do about them; the list of all cards is not shown
+FOREIGN = {
+    "DSLOAD": "write *DLOAD: a line is element or set, P1 to P4, pressure",
+    "VISCO": "there is no creep here", "TIME POINTS": "FREQUENCY=n on *NODE FILE",
+    "MODAL DAMPING": "*DAMPING, ALPHA=, BETA=", "MODAL DYNAMIC": "write *DYNAMIC:",
+    "CONTROLS": "dt min, dt max", "BUCKLE": "loads of buckling", "PART": "without parts",
+    "HEAT TRANSFER": "no temperatures", "COUPLED TEMPERATURE-DISPLACEMENT": "no temperatures",
+    "TEMPERATURE": "no temperatures", "CREEP": "no creep", "COMPLEX FREQUENCY": "write *FREQUENCY",
+    "STEADY STATE DYNAMICS": "not by modes", "ASSEMBLY": "Do not use parts and assemblies",
+    "MPC": "write *EQUATION", "DISTRIBUTING COUPLING": "write *EQUATION", "TIE": "same nodes",
+    "ORIENTATION": "isotropic", "HYPERELASTIC": "*ELASTIC", "CONTACT": "write *CONTACT PAIR",
+    "CONTACT CONTROLS": "matter of *IMPACT", "SECTION CONTROLS": "*ELEMENT GROUP",
+    "BULK VISCOSITY": "scaled mass", "MODEL CHANGE": "all steps", "MONITOR": "*NODE PRINT",
+}
+
 
 class Case:
     """A deck with what it must bring about; files are written beside it in its scratch folder."""
@@ -114,6 +129,11 @@ def generated_cases():
         Case("include_data_only_with_an_error", b"*NODE\n*INCLUDE, INPUT=nodes.inc\n" + good,
              ["nodes.inc:1:", "not a number"], files={"nodes.inc": b"5, zero, 0.\n"}),
     ]
+    for keyword, cure in FOREIGN.items():
+        case = Case(f"foreign_{keyword.lower().replace(' ', '_')}", good.replace(
+            b"*STEP", f"*{keyword}\n1\n*STEP".encode(), 1), ["unknown keyword", cure], line=14)
+        case.absent = ["allowed:"]
+        cases.append(case)
     define = Case("define_unknown", b"*PARAMETER\nk = 1\n" + good, ["no such *PARAMETER", "K"],
                   status=1, caret=False)
     define.defines = ["--define", "m=2"]

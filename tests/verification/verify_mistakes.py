@@ -149,6 +149,14 @@ mistake('a restitution on a continuum', ONE + section() + plane()
 mistake('no output', ONE + section() + step(output=''), ONE + section() + step(),
         'no output is asked for', '*NODE PRINT', '*NODE FILE', '*EL FILE', '*CONTACT PRINT',
         '*ENERGY PRINT')
+# modes are written unasked, also those after a static step
+MODES = '*STEP\n*FREQUENCY\n3\n*END STEP\n'
+for before in ('', '*STEP\n*STATIC\n*END STEP\n'):
+    for place, text in zip(('check', 'run', 'log'),
+                           answers(ONE + section() + '*BOUNDARY\n1000, 1, 2\n1001, 2\n'
+                                   + before + MODES)):
+        checks.true('warning: ' not in text and ('frequency, 3 modes' in text),
+                    f'modes {"after a static step" if before else "alone"}, no output asked for: {place}')
 
 for deck in sorted(INPUT.glob('*/*.inp')):
     if '*STEP' not in deck.read_text().upper():   # a mesh
