@@ -101,6 +101,19 @@ _, text = explain(INPUT/'ball'/'ball.inp')
 shows(text, 'ball', 'touches after', math.sqrt(0.2))
 shows(text, 'ball', 'with speed', math.sqrt(20.0))
 
+# a mass of 2 on a penalty spring of 1e6
+deck = scratch_folder() / 'penalty.inp'
+deck.write_text('*NODE\n1, 0., 1.\n*ELEMENT, TYPE=MASS, ELSET=A\n1, 1\n*MASS, ELSET=A\n2.\n'
+                '*SURFACE, NAME=B, TYPE=NODE\n1\n*RIGID SURFACE, NAME=F, TYPE=PLANE\n0., 0.\n0., 1.\n'
+                '*SURFACE INTERACTION, NAME=I\n*IMPACT, METHOD=PENALTY, STIFFNESS=1e6\n'
+                '*CONTACT PAIR, INTERACTION=I\nB, F\n*STEP\n*DYNAMIC, DIRECT\n0.01, 2.\n'
+                '*DLOAD\n, GRAV, 9.81, 0., -1.\n*NODE PRINT\nU\n*END STEP\n')
+_, text = explain(deck)
+period = 2.0*math.pi*math.sqrt(2.0/1e6)
+shows(text, 'penalty', 'has the period', period)
+shows(text, 'penalty', 'recommended step:', period/20.0, 3)
+checks.true('nothing here vibrates' not in text, 'penalty: a step is recommended')
+
 # masses that nothing holds have no period
 _, text = explain(INPUT/'cradle'/'cradle.inp')
 checks.true('longest period: none' in text, 'cradle: no period')

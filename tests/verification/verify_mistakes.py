@@ -119,6 +119,15 @@ mistake('a step of 9.5 increments a contact', INPUT/'bar'/'bar_implicit.inp', IN
         'the step 0.07 is too large for a contact that lasts about 2 L / c = 0.667: that is 9.5 increments',
         'take a step of about 0.013', options=('--define', 'dt=0.07'))
 
+# a mass of 2 falls on a spring of 1e6: its period there is 2 pi sqrt(2/1e6) = 0.00889
+BOUNCE = ('*NODE\n1, 0., 1.\n*ELEMENT, TYPE=MASS, ELSET=A\n1, 1\n*MASS, ELSET=A\n2.\n'
+          '*SURFACE, NAME=B, TYPE=NODE\n1\n*RIGID SURFACE, NAME=F, TYPE=PLANE\n0., 0.\n0., 1.\n'
+          + pair('B', 'F', '*IMPACT, METHOD=PENALTY, STIFFNESS=1e6\n')
+          + step(dt='{}', end='2.', loads='*DLOAD\n, GRAV, 9.81, 0., -1.\n'))
+mistake('a step that skips a penalty spring', BOUNCE.format('0.01'), BOUNCE.format('4.4e-4'),
+        'the mass 2 there has the period 0.00889 on STIFFNESS=1e6, 0.89 increments',
+        'a step of about 0.00044', 'METHOD=TRANSFORMATION')
+
 # 6: slave and master exchanged
 FINE = ONE + block(2, (0., 2.), (1.1, 2.1), 12, 2) + section() + section(2)
 mistake('the coarse surface is the slave', FINE + pair('TOP1', 'LOW2') + step(),
