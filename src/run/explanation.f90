@@ -8,7 +8,8 @@ module explanation
    use structure, only: diagonal_mass
    use structure_energy, only: strain_energy, group_kinetic_energy
    use continuum_bodies, only: body_list_type
-   use contact_outlook, only: outlook_type, look_out, surface_length, side_spacing
+   use contact_outlook, only: outlook_type, look_out, surface_length, side_spacing, &
+         duration_text
    use wave_speeds, only: longitudinal_speed, shear_speed, element_length, &
          speed_name, material_of
    use scene_setup, only: simulation_type
@@ -278,9 +279,8 @@ contains
          text = text//' with speed '//short(outlook%closing_speed)
       end if
       call self%add('', text)
-      if (outlook%body > 0 .and. outlook%duration > 0.0_wp) call self%add('', &
-            'a hit lasts about 2 L / c = '//short(outlook%duration)//', longer where bodies are ' &
-            //'round or soft')
+      if (outlook%known) call self%add('', 'a hit lasts about '//duration_text(outlook, 4) &
+            //', longer where bodies are round or soft')
    end subroutine explain_gap
 
 end module explanation

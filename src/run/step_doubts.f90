@@ -8,7 +8,7 @@ module step_doubts
    use steps, only: procedure_dynamic
    use structure, only: count_resisting
    use continuum_bodies, only: body_list_type
-   use contact_outlook, only: outlook_type, look_out
+   use contact_outlook, only: outlook_type, look_out, duration_text
    use penalty_springs, only: penalty_type, find_penalty
    use scene_setup, only: simulation_type, add_remark
    implicit none
@@ -47,6 +47,7 @@ contains
       real(wp), intent(in) :: period             !! the longest, 0: not known
       type(outlook_type), allocatable :: outlooks(:)
       real(wp) :: dt, shortest
+      character(len=:), allocatable :: text
       integer :: p
 
       call doubt_penalty(simulation, i_step)
@@ -59,16 +60,18 @@ contains
          call look_out(simulation, i_step, bodies, outlooks)
          shortest = huge(1.0_wp)
          do p = 1, size(outlooks)
-            if (outlooks(p)%body == 0 .or. outlooks(p)%first == 0) cycle
-            shortest = min(shortest, outlooks(p)%duration)
+            if (.not. outlooks(p)%known .or. outlooks(p)%first == 0) cycle
+            if (outlooks(p)%duration >= shortest) cycle
+            shortest = outlooks(p)%duration
+            text = duration_text(outlooks(p), 3)
          end do
          if (shortest < least_of_contact*dt) then
-            call remark('a contact that lasts about 2 L / c = ', shortest)
+            call remark('a contact that lasts about '//text, shortest)
             return
          end if
       end if
-      if (period > 0.0_wp .and. period < least_increments*dt) call remark('the longest period, ', &
-            period)
+      if (period > 0.0_wp .and. period < least_increments*dt) call remark('the longest period, ' &
+            //to_text(period, 3), period)
 
    contains
 
@@ -79,7 +82,7 @@ contains
          call add_remark(simulation, note_at(simulation%model%source, &
                simulation%model%steps(i_step)%time_place, 'warning: the step ' &
                //to_text(simulation%model%steps(i_step)%dt)//' is too large for '//what &
-               //to_text(time, 3)//': that is '//to_text(time/simulation%model%steps(i_step)%dt, &
+               //': that is '//to_text(time/simulation%model%steps(i_step)%dt, &
                2)//' increments'//new_line('a')//'  cure: take a step of about ' &
                //to_text(time/good_increments*simulation%model%steps(i_step)%dt/dt, 2) &
                //'; carom check --explain says what it has to resolve'))

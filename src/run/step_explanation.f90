@@ -207,7 +207,7 @@ contains
       if (periods(1) > 0.0_wp) best(1) = periods(1)/parts
       if (shortest_contact(outlooks) < huge(1.0_wp)) then
          best(2) = shortest_contact(outlooks)/of_contact
-         best(3) = shortest_time(bodies)
+         if (.not. all(outlooks%swings .or. .not. outlooks%known)) best(3) = shortest_time(bodies)
       end if
       associate (explicit => simulation%critical(scheme_explicit)%step)
          if (explicit < huge(1.0_wp)) best(4) = of_critical*explicit
