@@ -104,6 +104,8 @@ contains
                   //increments(step, period)
          else if (costly) then
             text = 'longest period: too costly to find here, see *FREQUENCY'
+         else if (swings_closed(simulation)) then
+            text = 'longest period: none while all gaps are open; springs work once one is closed'
          else
             text = 'longest period: none, nothing is held or connected elastically'
          end if
@@ -114,6 +116,14 @@ contains
       end associate
       call self%add('', text)
    end subroutine explain_periods
+
+   !> Whether a model that has no period of its own has springs with mass on them all the same:
+   !> those to contact nodes without mass, which go with the mass until they touch.
+   pure logical function swings_closed(simulation)
+      type(simulation_type), intent(in) :: simulation
+
+      swings_closed = simulation%scene%rows%n > 0 .and. maxval(simulation%critical%omega) > 0.0_wp
+   end function swings_closed
 
    !> ", 157 increments" of a step with fixed ones.
    pure function increments(step, time) result(text)
@@ -198,7 +208,7 @@ contains
       type(body_list_type), intent(in) :: bodies
       type(outlook_type), intent(in) :: outlooks(:)
       real(wp), intent(in) :: periods(2)         !! the longest, that on penalty springs
-      real(wp) :: best(5), parts
+      real(wp) :: best(6), parts
       character(len=:), allocatable :: text
       integer :: i
 
@@ -212,6 +222,8 @@ contains
       associate (explicit => simulation%critical(scheme_explicit)%step)
          if (explicit < huge(1.0_wp)) best(4) = of_critical*explicit
       end associate
+      if (.not. periods(1) > 0.0_wp .and. swings_closed(simulation)) best(6) = 2.0_wp*pi &
+            /maxval(simulation%critical%omega)/of_period
       if (periods(2) < huge(1.0_wp)) best(5) = periods(2)/of_penalty
       i = minloc(best, dim=1)
       if (.not. best(i) < huge(1.0_wp)) then
@@ -228,6 +240,8 @@ contains
          text = 'Courant number 1: waves of contact go from element to element'
       case (5)
          text = 'period on the penalty spring / 20'
+      case (6)
+         text = 'shortest period / 20, that of closed gaps'
       case default
          text = '0.9 of the critical step'
       end select
