@@ -9,6 +9,7 @@ module step_doubts
    use structure, only: count_resisting
    use continuum_bodies, only: body_list_type
    use contact_outlook, only: outlook_type, look_out, duration_text
+   use driven_reactions, only: doubt_reactions
    use penalty_springs, only: penalty_type, find_penalty
    use scene_setup, only: simulation_type, add_remark
    implicit none
@@ -51,6 +52,7 @@ contains
       integer :: p
 
       call doubt_penalty(simulation, i_step)
+      call doubt_reactions(simulation, i_step)
       if (.not. may_be_too_long(simulation, i_step)) return
       associate (step => simulation%model%steps(i_step))
          dt = step%dt

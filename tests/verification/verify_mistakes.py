@@ -1,6 +1,7 @@
 """Typical mistakes that are legal decks: each gets a warning that names the cure, in `carom check`, on
 the terminal of `carom run` and in its log; with the cure the warning goes. Mistakes that are errors are
 in tests/deck_errors. The decks of input/ get no such warning."""
+import math
 import subprocess
 import sys
 from pathlib import Path
@@ -153,6 +154,19 @@ mistake('a restitution on a continuum', ONE + section() + plane()
         + pair('LOW1', 'FLOOR', '*IMPACT, RESTITUTION=0.8\n') + step(),
         ONE + section() + plane() + pair('LOW1', 'FLOOR', '*IMPACT\n') + step(),
         'RESTITUTION=0.8 acts on 5 nodes of a body that deforms (LOW1)', 'leave RESTITUTION away')
+
+# a mass of 2 moved along 1 - cos 2t, by points: its reaction has no inertia, that of a velocity has
+CURVE = ''.join(f'{0.05*i!r}, {1.0 - math.cos(0.1*i)!r}\n' for i in range(41))
+RAMP = '0., 0.\n1., 1.\n2., 1.\n'
+MOVED = ('*NODE, NSET=N\n1, 0., 0.\n2, 1., 0.\n*ELEMENT, TYPE=MASS, ELSET=A\n1, 1\n2, 2\n*MASS, ELSET=A\n2.\n'
+         '*ELEMENT, TYPE=SPRING2, ELSET=S\n3, 1, 2\n*SPRING, ELSET=S\n1, 1\n1.\n*AMPLITUDE, NAME=WAY\n{}')
+DRIVEN = step(dt='0.01', end='2.', loads='*BOUNDARY, AMPLITUDE=WAY{}\n1, 1, 1, 1.\n', output='*NODE PRINT\nU, RF\n')
+mistake('the reaction of a displacement by points', MOVED.format(CURVE) + DRIVEN.format(''),
+        MOVED.format(CURVE) + DRIVEN.format(', TYPE=VELOCITY'), 'goes straight from point to point of WAY',
+        'RF lacks the inertia of the mass 2 there', 'TYPE=VELOCITY or TYPE=ACCELERATION')
+checks.true('warning: ' not in answers(MOVED.format(RAMP) + DRIVEN.format(''))[0], 'a ramp has no inertia to miss')
+checks.true('warning: ' not in answers((MOVED.format(CURVE) + DRIVEN.format('')).replace('U, RF', 'U'))[0],
+            'no warning where RF is not asked for')
 
 # 10: no output
 mistake('no output', ONE + section() + step(output=''), ONE + section() + step(),
