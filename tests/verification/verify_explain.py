@@ -129,6 +129,18 @@ checks.true('nothing' not in text, 'massless tip: something vibrates')
 shows(text, 'massless tip', 'shortest', period)
 shows(text, 'massless tip', 'recommended step:', period/20.0, 3)
 
+# what a base motion does to a gap is not foreseen, and that is said
+for speed, words in ((0.0, 'not closing at the start; *BASE MOTION moves it later'),
+                     (0.5, 'touches after 2 (200 increments) with speed 0.5, without *BASE MOTION, which moves it too')):
+    deck = scratch_folder() / 'base.inp'
+    deck.write_text('*NODE\n1, 0., 0.\n*ELEMENT, TYPE=MASS, ELSET=A\n1, 1\n*MASS, ELSET=A\n2.\n'
+                    '*AMPLITUDE, NAME=G\n0., 1.\n*SURFACE, NAME=B, TYPE=NODE\n1\n'
+                    '*RIGID SURFACE, NAME=F, TYPE=PLANE\n-1., 0.\n1., 0.\n*SURFACE INTERACTION, NAME=I\n*IMPACT\n'
+                    f'*CONTACT PAIR, INTERACTION=I\nB, F\n*INITIAL CONDITIONS, TYPE=VELOCITY\n1, 1, -{speed}\n'
+                    '*STEP\n*DYNAMIC, DIRECT\n0.01, 1.5\n*BASE MOTION, AMPLITUDE=G, DOF=1\n2.\n'
+                    '*NODE PRINT\nU\n*END STEP\n')
+    checks.true(words in explain(deck)[1], f'base motion, speed {speed}: said')
+
 # masses that nothing holds have no period
 _, text = explain(INPUT/'cradle'/'cradle.inp')
 checks.true('longest period: none' in text, 'cradle: no period')
