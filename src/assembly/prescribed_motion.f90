@@ -36,7 +36,7 @@ module prescribed_motion
 contains
 
    !> Brings the conditions of a step into force. Earlier ones go on: with an amplitude on total
-   !> time by it, else held where they are.
+   !> time by it, else as they are.
    subroutine begin_motions(self, boundaries, freedom, amplitudes, keep, span, static)
       type(motion_set_type), intent(inout) :: self
       type(boundary_type), intent(in) :: boundaries(:)
@@ -123,8 +123,8 @@ contains
       motion%duration = span(2)
    end function new_motion
 
-   !> What an earlier step's condition does in a later one: goes on by total time, or stands still
-   !> at the displacement it has (a velocity or acceleration on step time ends with its step).
+   !> What an earlier step's condition does in a later one: goes on by total time, or with the
+   !> displacement, velocity or acceleration that it has at the end of its step.
    pure subroutine hold(motion, t)
       type(motion_type), intent(inout) :: motion
       real(wp), intent(in) :: t
@@ -132,8 +132,16 @@ contains
 
       if (motion%has_amplitude .and. motion%amplitude%time /= time_step) return
       call evaluate(motion, t, d, v, a)
-      motion%value = d
-      motion%motion = motion_displacement
+      select case (motion%motion)
+      case (motion_displacement)
+         motion%value = d
+      case (motion_velocity)
+         motion%value = v
+      case default
+         motion%value = a
+      end select
+      motion%d_start = d
+      motion%v_start = v
       motion%has_amplitude = .false.
       motion%ramped = .false.
       motion%t_start = t

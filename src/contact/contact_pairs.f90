@@ -74,7 +74,7 @@ contains
          if (pair < p) then
             call fail_at(error, model%source, model%pairs(p)%place, 'in the results this pair is ' &
                   //'named '//pair_name(model, p)//', and so is another', &
-                  'leave out a pair that is there twice, or rename a surface')
+                  'rename a surface')
             return
          end if
          do pass = 1, model%pairs(p)%passes

@@ -190,7 +190,7 @@ contains
                if (allocated(error)) return
             end do
             call add(self, file, column_type(impulse_column, p, 0, 0), group//'impulse', &
-                  'normal contact impulse of the increment, impacts included', error)
+                  'normal contact impulse since the row before, impacts included', error)
             if (allocated(error)) return
          end if
          do i = 1, size(pair_quantities)

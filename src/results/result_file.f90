@@ -3,6 +3,7 @@ module result_file
    use kinds, only: wp
    use errors, only: error_type
    use part_file, only: part_file_type
+   use state_archive, only: archive_type
    use model, only: model_type
    use steps, only: request_type, request_node_print, request_element_print, &
          request_contact_print, request_energy_print, request_node_file, request_element_file, &
@@ -45,6 +46,9 @@ module result_file
       type(restart_group_type) :: restart
       integer :: n_elements = 0
       logical :: has_records = .false.           !! something worth a file of results
+      real(wp), allocatable :: impulse(:)        !! (n_rows) since the last row of the history
+   contains
+      procedure :: pass_state
    end type result_file_type
 
 contains
@@ -87,9 +91,19 @@ contains
       call new_events(self, list, error)
       if (allocated(error)) return
       call new_gap_probe(self%gaps, scene)
+      self%impulse = 0.0_wp*scene%impulse
       call new_contact_faces(self%faces, model, list)
       call write_model(self%file, model, error)
    end subroutine make_parts
+
+   !> What the records to come depend on.
+   subroutine pass_state(self, archive)
+      class(result_file_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+
+      call self%gaps%pass_state(archive)
+      call archive%pass('impulse_since_the_last_row', self%impulse)
+   end subroutine pass_state
 
    !> The table of events; its texts are as long as the longest.
    subroutine new_events(self, list, error)
@@ -213,6 +227,7 @@ contains
 
       call record_events(self, scene, list, error)
       if (allocated(error)) return
+      self%impulse = self%impulse + scene%impulse
       print_due = is_due(requests, [request_node_print, request_element_print, &
             request_contact_print], increment, last)
       energy_due = is_due(requests, [request_energy_print], increment, last)
@@ -245,8 +260,12 @@ contains
       call take_snapshot(snapshot, scene, motion, self%history%needs_reactions &
             .or. self%grid%needs_reactions)
       call measure_contact(self, scene, list, motion, snapshot)
-      if (due(1)) call record_history(self%history, self%file, scene, list, snapshot, error)
-      if (allocated(error)) return
+      if (due(1)) then
+         snapshot%impulse = self%impulse
+         self%impulse = 0.0_wp
+         call record_history(self%history, self%file, scene, list, snapshot, error)
+         if (allocated(error)) return
+      end if
       if (due(2)) call record_frame(self%grid, self%file, scene, list, snapshot, error)
    end subroutine record_state
 

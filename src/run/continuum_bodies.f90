@@ -9,7 +9,7 @@ module continuum_bodies
    implicit none
    private
 
-   public :: body_list_type, find_bodies
+   public :: body_list_type, find_bodies, forget_bodies
 
    !> The bodies of a model, by the first of their nodes.
    type :: body_list_type
@@ -60,6 +60,13 @@ contains
       end do
       call measure(self, model)
    end subroutine find_bodies
+
+   !> Gives the memory back.
+   pure subroutine forget_bodies(self)
+      type(body_list_type), intent(out) :: self
+
+      self%n = 0
+   end subroutine forget_bodies
 
    !> Boxes, speeds and smallest elements.
    subroutine measure(self, model)

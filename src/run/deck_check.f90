@@ -20,7 +20,7 @@ module deck_check
    use run_log, only: log_type, say, remark
    use json_text, only: json_type
    use check_json, only: step_facts_type, facts_of, describe_check, put_lines
-   use continuum_bodies, only: body_list_type, find_bodies
+   use continuum_bodies, only: body_list_type, find_bodies, forget_bodies
    use notices, only: is_warning
    use deck_doubts, only: doubt_deck
    use step_doubts, only: doubt_step, may_be_too_long
@@ -143,12 +143,14 @@ contains
       if (allocated(error)) return
       call build_scene(simulation, error)
       if (allocated(error)) return
-      call find_bodies(bodies, simulation%model)
-      call doubt_deck(simulation, bodies)
       allocate (preview%may_meet(size(simulation%contact%names)), source=.false., stat=status)
       call check_allocation(status)
+      call find_bodies(bodies, simulation%model)
+      call doubt_deck(simulation, bodies)
       if (aloud) call report_model(simulation, log)
       call go_through_steps(simulation, bodies, log, aloud, preview, error)
+      ! what is measured next shall not have them
+      call forget_bodies(bodies)
       if (allocated(error)) then
          call simulation%scene%system%matrices%release()
          return

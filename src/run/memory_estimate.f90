@@ -91,7 +91,7 @@ contains
    end function state_bytes
 
    !> Arrays of the states with contact that stand beside the first: where an impact is sought they
-   !> are those at both ends of a part of the step, at the impact and on trial.
+   !> are those at the end of a part of the step, at the impact and on trial.
    pure function n_beside(simulation) result(n)
       type(simulation_type), intent(in) :: simulation
       real(wp) :: n
@@ -102,7 +102,7 @@ contains
          if (scene%rows%n == 0) return
          n = n_arrays
          if (scene%settings%method /= method_transformation .or. scene%settings%anchored) return
-         n = 5.0_wp*n_arrays
+         n = 3.0_wp*n_arrays
       end associate
    end function n_beside
 

@@ -220,7 +220,7 @@ contains
             simulation%contact, extents, self%misfit, error)
       self%resumed = .not. (allocated(error) .or. allocated(self%misfit))
       if (self%resumed) then
-         call output%results%gaps%pass_state(self%archive)
+         call output%results%pass_state(self%archive)
          call name_deck(self%definitions, simulation%model%source, output)
          call write_deck_names(output%results%restart, output%results%file, error)
       end if

@@ -8,12 +8,12 @@ module run_state
    use kinds, only: wp
    use errors, only: error_type, new_error, status_file
    use text, only: to_text
+   use places, only: fail_at
    use state_archive, only: archive_type
    use explicit_motion, only: go_on_explicitly
    use kept_solutions, only: kept_solutions_type, note_kept, drop_kept, make_again
    use scene_setup, only: simulation_type, begin_step
    use course, only: course_type
-   use amplitude_breaks, only: find_breaks
    implicit none
    private
 
@@ -79,7 +79,7 @@ contains
       call pass_counts(simulation, archive)
       call check_archive(archive, error)
       if (allocated(error)) return
-      call lengthen(simulation, course)
+      call lengthen(simulation, course, error)
    end subroutine restore_state
 
    !> Back to a state of this very run, in the same step.
@@ -219,10 +219,12 @@ contains
    end subroutine check_sizes
 
    !> The deck may let a step last longer than the run knew. What has been done stays; after a last
-   !> increment that was shorter, increments are counted from its end.
-   subroutine lengthen(simulation, course)
+   !> increment that was shorter, increments are counted from its end. Error: the sizes of the
+   !> increments were found for a TOLERANCE over the shorter time.
+   subroutine lengthen(simulation, course, error)
       type(simulation_type), intent(in) :: simulation
       type(course_type), intent(inout) :: course
+      type(error_type), allocatable, intent(out) :: error
       real(wp) :: whole
 
       associate (step => simulation%model%steps(course%step))
@@ -233,10 +235,9 @@ contains
             course%counted_from = course%increment
          end if
          if (course%twins%n == 0) return
-         course%twins%settings%duration = step%duration
-         course%twins%next_break = 1
-         call find_breaks(simulation, course%t_start + [0.0_wp, step%duration], &
-               course%twins%breaks)
+         call fail_at(error, simulation%model%source, step%time_place, 'a step with TOLERANCE ' &
+               //'cannot last longer than before: its increments were chosen for an end at ' &
+               //to_text(course%duration), 'leave the step as it was and let another one follow')
       end associate
    end subroutine lengthen
 

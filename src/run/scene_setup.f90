@@ -24,6 +24,8 @@ module scene_setup
    use impact_method, only: impact_method_type
    use increment_count, only: count_increments, check_remainder
    use massless_contacts, only: mark_massless_rows
+   use named_freedoms, only: check_named_freedoms
+   use friction_line, only: check_friction
    use automatic_groups, only: partition_type, resolve_automatic
    use impact_factory, only: make_impact_method, check_method, check_anchor
    use order_check, only: check_order
@@ -76,7 +78,11 @@ contains
       self%scene%impulse = [(0.0_wp, i=1, self%scene%rows%n)]
       self%scene%curvature = self%scene%impulse
       self%has_met = [(.false., i=1, size(self%contact%names))]
-      call check_freedoms_named(self, error)
+      call note_idle_conditions(self)
+      call check_named_freedoms(self%model, self%scene%system%structure%map%freedom, error)
+      if (allocated(error)) return
+      call check_friction(self%model, self%contact, self%scene%rows, &
+            self%scene%system%structure%map%freedom, error)
       if (allocated(error)) return
       call initial_motion(self, error)
    end subroutine build_scene
@@ -120,26 +126,16 @@ contains
       call move_alloc(longer, self%remarks)
    end subroutine add_remark
 
-   !> Loads and initial conditions need a freedom that exists; a boundary condition without one is
-   !> noted.
-   subroutine check_freedoms_named(self, error)
+   !> A boundary condition without a freedom is noted.
+   subroutine note_idle_conditions(self)
       type(simulation_type), intent(inout) :: self
-      type(error_type), allocatable, intent(out) :: error
       integer :: i
 
       call note_idle_boundaries(self, self%model%boundaries)
-      call check_values(self, self%model%initial_displacements, 'initial displacement', error)
-      if (allocated(error)) return
-      call check_values(self, self%model%initial_velocities, 'initial velocity', error)
-      if (allocated(error)) return
       do i = 1, size(self%model%steps)
          call note_idle_boundaries(self, self%model%steps(i)%boundaries)
-         call check_values(self, self%model%steps(i)%loads, 'load', error)
-         if (allocated(error)) return
-         call check_values(self, self%model%steps(i)%initial_velocities, 'initial velocity', error)
-         if (allocated(error)) return
       end do
-   end subroutine check_freedoms_named
+   end subroutine note_idle_conditions
 
    subroutine note_idle_boundaries(self, boundaries)
       type(simulation_type), intent(inout) :: self
@@ -156,25 +152,6 @@ contains
       if (n > 0) call add_remark(self, note_at(self%model%source, boundaries(first)%place, &
             plural(n, 'condition')//' from here on where nothing can move; accepted'))
    end subroutine note_idle_boundaries
-
-   subroutine check_values(self, values, what, error)
-      type(simulation_type), intent(in) :: self
-      type(nodal_value_type), intent(in) :: values(:)
-      character(len=*), intent(in) :: what
-      type(error_type), allocatable, intent(out) :: error
-      integer :: i
-
-      do i = 1, size(values)
-         if (self%scene%system%structure%map%freedom(values(i)%dof, values(i)%node) > 0) cycle
-         if (.not. abs(values(i)%value) > 0.0_wp) cycle
-         call fail_at(error, self%model%source, values(i)%place, what//' on node ' &
-               //to_text(self%model%nodes%id(values(i)%node))//', freedom ' &
-               //to_text(values(i)%dof) &
-               //', which does not exist: no element there can move that way', &
-               'load a direction that an element or a mass has')
-         return
-      end do
-   end subroutine check_values
 
    !> Initial displacements and velocities of the model; an overlap at the start is an error.
    subroutine initial_motion(self, error)

@@ -41,7 +41,7 @@ contains
             call collect_state(simulation, course, archive)
             call measure_results(extents, output%results)
             call extents%pass_state(archive)
-            call output%results%gaps%pass_state(archive)
+            call output%results%pass_state(archive)
             call output%log%pass_state(archive)
             call count_up(output%tally, simulation, course%step)
             call output%tally%pass_state(archive, simulation)

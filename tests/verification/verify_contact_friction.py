@@ -3,7 +3,7 @@ import math
 
 import numpy as np
 
-from carom_case import Checks
+from carom_case import Checks, run_deck
 from contact_case import Folder
 from contact_solutions import oblique_bounce, slope_acceleration, stopping
 
@@ -108,6 +108,26 @@ def check_ball(checks):
                        1e-9 * force[:, 1].max(), f'ball, mu = {friction}: forces in the cone')
 
 
+def check_oscillator(checks):
+    """A mass alone on a spring and a rough plane: every half swing is shorter by 2 mu m g / k."""
+    run = run_deck('*NODE\n1, 1, 0\n*ELEMENT, TYPE=MASS, ELSET=m\n1, 1\n*MASS, ELSET=m\n2\n'
+                   '*ELEMENT, TYPE=SPRING1, ELSET=s\n2, 1\n*SPRING, ELSET=s\n1\n100\n'
+                   '*SURFACE, NAME=b, TYPE=NODE\n1\n*RIGID SURFACE, NAME=f, TYPE=PLANE\n0, 0\n0, 1\n'
+                   '*SURFACE INTERACTION, NAME=i\n*IMPACT\n*FRICTION\n0.1\n'
+                   '*CONTACT PAIR, INTERACTION=i\nb, f\n'
+                   '*INITIAL CONDITIONS, TYPE=DISPLACEMENT\n1, 1, 0.215\n*STEP\n*DYNAMIC, DIRECT\n'
+                   '0.005, 8\n*DLOAD\n, GRAV, 9.81, 0, -1, 0\n*NODE PRINT\nU, V\n*END STEP\n')
+    t, u = run['history/time'], run['history/node_1/U1']
+    shift, half = 0.1*2*9.81/100, np.pi/np.sqrt(50)
+    n = np.floor(t/half)
+    centre, size = shift*(-1)**n, 0.215 - (2*n + 1)*shift
+    exact = centre + (-1)**n*size*np.cos(np.sqrt(50)*(t - n*half))
+    moving = size > shift
+    checks.close(u[moving], exact[moving], 2e-3, 'an oscillator on a rough plane: displacement')
+    rest = 0.215 - 2*np.ceil((0.215 - shift)/(2*shift))*shift
+    checks.close(np.abs(u[-1]), abs(rest), 1e-3, 'an oscillator on a rough plane: where it stops')
+
+
 checks = Checks()
 block.check(checks)
 ball.check(checks)
@@ -116,4 +136,5 @@ check_slope(checks)
 check_flutter(checks)
 check_point(checks)
 check_ball(checks)
+check_oscillator(checks)
 checks.finish()

@@ -276,6 +276,21 @@ def check_words(checks):
         checks.true(set(run.file['history/contact_TOP-BASE']) == columns, f'{words}: the columns')
 
 
+def check_sets_of_gaps(checks):
+    """Gaps of two sets in turns: a column each."""
+    gaps = ''.join(f'*ELEMENT, TYPE=GAPUNI, ELSET={name}\n{10 + i}, {2*i + 1}, {2*i + 2}\n'
+                   for i, name in enumerate('XYX'))
+    run = run_deck('*NODE\n' + ''.join(f'{n}, {n}, 0\n' for n in range(1, 7))
+                   + '*ELEMENT, TYPE=MASS, ELSET=M\n' + ''.join(f'{n}, {n}\n' for n in range(1, 7))
+                   + '*MASS, ELSET=M\n1\n' + gaps + '*SURFACE INTERACTION, NAME=K\n*IMPACT\n'
+                   '*GAP, ELSET=X, INTERACTION=K\n0, 1, 0, 0\n*GAP, ELSET=Y, INTERACTION=K\n0, 1, 0, 0\n'
+                   '*STEP\n*DYNAMIC, DIRECT\n0.1, 1\n*CLOAD\n1, 1, 1\n2, 1, -1\n3, 1, 2\n4, 1, -2\n'
+                   '5, 1, 4\n6, 1, -4\n*CONTACT PRINT\nCF\n*END STEP\n')
+    for name, force in (('X', 1 + 4), ('Y', 2)):
+        found = np.abs(run[f'history/contact_{name}/CF1'][1:])
+        checks.at_most(np.abs(found - force).max(), 1e-12, f'gaps of the set {name}: their force')
+
+
 def check_vtk(checks, what, run):
     """VTK reads all frames, NaN too."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -306,6 +321,7 @@ def main():
     check_open(checks)
     check_part(checks)
     check_words(checks)
+    check_sets_of_gaps(checks)
     checks.finish()
 
 

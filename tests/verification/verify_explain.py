@@ -153,6 +153,13 @@ for deck in sorted(INPUT.glob('*/*.inp')):
     checks.true(len(lines) <= 30 and max(map(len, lines)) <= 100 and 'step 1' in text,
                 f'{deck.parent.name}/{deck.name}: one screen')
 
+# many steps are explained to the last
+text = (INPUT/'sdof'/'sdof.inp').read_text()
+many = scratch_folder()/'many.inp'
+many.write_text(text + 14*text[text.index('*STEP'):])
+_, text = explain(many)
+checks.true('step 15 ' in text, 'fifteen steps are all explained')
+
 scratch = scratch_folder()
 for words in (['run', str(INPUT/'sdof'/'sdof.inp'), '--explain', '-o', str(scratch/'x.h5')],):
     done = subprocess.run([CAROM, *words], capture_output=True, text=True, timeout=60)
