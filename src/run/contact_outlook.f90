@@ -2,6 +2,7 @@
 !> apart, when they will touch and for how long.
 module contact_outlook
    use kinds, only: wp
+   use text, only: to_text
    use model, only: model_type
    use surfaces, only: surface_type
    use constraint_rows, only: row_rates, row_accelerations
@@ -14,11 +15,12 @@ module contact_outlook
    implicit none
    private
 
-   public :: outlook_type, look_out, surface_length, side_spacing, contact_time
+   public :: outlook_type, look_out, surface_length, side_spacing, contact_time, duration_text
 
    !> Gaps below this part of the size of the bodies are none; cosine from which a direction is
    !> along another.
    real(wp), parameter :: touching = 1.0e-9_wp, along = 0.5_wp
+   real(wp), parameter :: half_pi = acos(0.0_wp)
    !> What resists a translation with this part of what it does when bent is free.
    real(wp), parameter :: free = 1.0e-9_wp
 
@@ -31,8 +33,9 @@ module contact_outlook
       integer :: first = 0                       !! row that touches first, 0: none closes
       real(wp) :: first_time = 0.0_wp            !! gap over closing speed
       real(wp) :: closing_speed = 0.0_wp         !! of that row
-      real(wp) :: duration = 0.0_wp              !! a wave to and fro through a body, 0: not known
-      integer :: body = 0                        !! that body
+      real(wp) :: duration = 0.0_wp              !! of the contact
+      logical :: known = .false.                 !! the duration is
+      logical :: swings = .false.                !! a stiff body on a soft one; else it is 2 L / c
    end type outlook_type
 
 contains
@@ -142,35 +145,69 @@ contains
       acts_on_all = set == 0 .or. .not. any(left)
    end function acts_on_all
 
-   !> The shorter of the times 2 L / c of those of both bodies that are free to rebound, L along the
-   !> normal; nothing for surfaces that touch already and do not close.
+   !> How long the bodies stay in contact; nothing for surfaces that touch already and do not
+   !> close.
    subroutine find_duration(simulation, bodies, one)
       type(simulation_type), intent(in) :: simulation
       type(body_list_type), intent(in) :: bodies
       type(outlook_type), intent(inout) :: one
       integer :: partners(2), i
-      real(wp) :: time
+      real(wp) :: times(2)
+      logical :: held(2)
 
       if (one%nearest == 0) return
       if (one%first == 0 .and. one%gap <= touching*maxval([0.0_wp, bodies%high &
             - bodies%low])) return
       partners = 0
-      associate (row => simulation%contact%rows(one%nearest), model => simulation%model)
+      associate (row => simulation%contact%rows(one%nearest), model => simulation%model, &
+            normal => simulation%scene%rows%normal(:, one%nearest))
          partners(1) = bodies%of_node(row%node)
          if (row%other > 0) partners(2) = bodies%of_node(row%other)
          if (row%model_pair > 0) partners(2) = partner_body(model, bodies, row%model_pair, row%pass)
+         times = 0.0_wp
+         held = .true.
+         do i = 1, 2
+            if (partners(i) == 0) cycle
+            times(i) = contact_time(bodies, partners(i), normal)
+            held(i) = is_held(simulation, bodies, partners(i), normal)
+         end do
       end associate
-      do i = 1, 2
-         if (partners(i) == 0) cycle
-         if (is_held(simulation, bodies, partners(i), simulation%scene%rows%normal(:, &
-               one%nearest))) cycle
-         time = contact_time(bodies, partners(i), simulation%scene%rows%normal(:, one%nearest))
-         if (.not. time > 0.0_wp) cycle
-         if (one%body > 0 .and. time >= one%duration) cycle
-         one%duration = time
-         one%body = partners(i)
-      end do
+      if (all(times > 0.0_wp)) then
+         call last_together(times, bodies%impedance(partners), held, one)
+      else if (.not. held(1) .or. .not. held(2)) then
+         one%duration = maxval(times, mask=.not. held)
+      end if
+      one%known = one%duration > 0.0_wp
    end subroutine find_duration
+
+   !> Two bodies, each with its time 2 L / c. They part with the wave that comes back in the body of
+   !> lower impedance z. One in the other, Z, takes but a part of the force away, which fades about
+   !> as exp(-2 z t/(Z T)), T the time of that body; on a soft body that is held, the stiff one
+   !> swings as a mass on a spring for half a period, (pi/2) sqrt(Z T t/z), for T at least.
+   pure subroutine last_together(times, impedances, held, one)
+      real(wp), intent(in) :: times(2), impedances(2)
+      logical, intent(in) :: held(2)             !! held or moved along the normal
+      type(outlook_type), intent(inout) :: one
+      real(wp) :: fading, ratio
+      integer :: soft, stiff
+
+      if (all(held)) return
+      soft = minloc(impedances, dim=1)
+      stiff = 3 - soft
+      if (held(stiff)) then
+         one%duration = times(soft)
+         return
+      end if
+      ratio = impedances(stiff)/impedances(soft)
+      fading = times(stiff)*max(1.0_wp, 0.5_wp*ratio)
+      if (held(soft)) then
+         one%duration = max(times(stiff), min(fading, half_pi*sqrt(ratio*product(times))))
+         one%swings = one%duration > times(stiff)
+      else
+         one%duration = min(times(soft), fading)
+         one%swings = fading < times(soft) .and. fading > times(stiff)
+      end if
+   end subroutine last_together
 
    !> Whether a node of a body is held, or moved, along a direction.
    pure logical function is_held(simulation, bodies, b, direction)
@@ -211,6 +248,20 @@ contains
 
       contact_time = 2.0_wp*bodies%transit_time(b, direction)
    end function contact_time
+
+   !> "2 L / c = 0.667", "0.00075 (a stiff body on a soft one)".
+   pure function duration_text(one, digits) result(text)
+      type(outlook_type), intent(in) :: one
+      integer, intent(in) :: digits
+      character(len=:), allocatable :: text
+
+      text = to_text(one%duration, digits)
+      if (one%swings) then
+         text = text//' (a stiff body on a soft one)'
+      else
+         text = '2 L / c = '//text
+      end if
+   end function duration_text
 
    !> Length of all sides of a surface, straight between their nodes; 0 for one of nodes.
    pure real(wp) function surface_length(model, surface) result(length)

@@ -18,6 +18,7 @@ module continuum_bodies
       integer, allocatable :: of_element(:)      !! (n_elements)
       real(wp), allocatable :: low(:, :), high(:, :)   !! (3, n) corners of their boxes
       real(wp), allocatable :: speed(:)          !! (n) of the fastest wave, 0: no density
+      real(wp), allocatable :: impedance(:)      !! (n) density times speed, of the same material
       real(wp), allocatable :: shortest_time(:)  !! (n) of a wave through an element, the least
       integer, allocatable :: shortest(:)        !! (n) that element's index
    contains
@@ -75,11 +76,12 @@ contains
       integer :: e, i, b, status
 
       allocate (self%low(3, self%n), self%high(3, self%n), self%speed(self%n), &
-            self%shortest_time(self%n), self%shortest(self%n), stat=status)
+            self%impedance(self%n), self%shortest_time(self%n), self%shortest(self%n), stat=status)
       call check_allocation(status)
       self%low = huge(1.0_wp)
       self%high = -huge(1.0_wp)
       self%speed = 0.0_wp
+      self%impedance = 0.0_wp
       self%shortest_time = huge(1.0_wp)
       self%shortest = 0
       do i = 1, model%nodes%n
@@ -93,7 +95,10 @@ contains
          if (b == 0 .or. material_of(model, e) == 0) cycle
          c = longitudinal_speed(model%materials(material_of(model, e)), model%elements%kind(e))
          if (.not. c > 0.0_wp) cycle
-         self%speed(b) = max(self%speed(b), c)
+         if (c > self%speed(b)) then
+            self%speed(b) = c
+            self%impedance(b) = c*model%materials(material_of(model, e))%density
+         end if
          time = element_length(model, e)/c
          if (time >= self%shortest_time(b)) cycle
          self%shortest_time(b) = time

@@ -11,7 +11,8 @@ module deck_doubts
    use model, only: model_type
    use continuum_bodies, only: body_list_type
    use contact_outlook, only: side_spacing
-   use wave_speeds, only: element_length, material_of
+   use wave_speeds, only: material_of
+   use bending_doubts, only: doubt_bending
    use surface_sides, only: doubt_sides
    use unit_doubts, only: doubt_units
    use scene_setup, only: simulation_type, add_remark
@@ -24,8 +25,6 @@ module deck_doubts
    real(wp), parameter :: much_coarser = 1.5_wp
    !> Poisson's ratio from which elements of constant volume lock.
    real(wp), parameter :: nearly_incompressible(2) = [0.45_wp, 0.48_wp]   !! triangles, others
-   !> A body so many times longer than thick may bend; so many triangles through it are too few.
-   real(wp), parameter :: slender = 4.0_wp, few_through = 8.0_wp
 
 contains
 
@@ -122,50 +121,6 @@ contains
                //'*SOLID SECTION'
       end if
    end function locking_cure
-
-   !> Linear triangles are too stiff in bending: slender bodies of few of them through their
-   !> thickness.
-   subroutine doubt_bending(simulation, bodies)
-      type(simulation_type), intent(inout) :: simulation
-      type(body_list_type), intent(in) :: bodies
-      real(wp) :: smallest(bodies%n), long, thick
-      integer :: e, b, example(bodies%n)
-
-      smallest = huge(1.0_wp)
-      example = 0
-      associate (model => simulation%model)
-         do e = 1, model%elements%n
-            if (.not. is_solid_kind(model%elements%kind(e))) cycle
-            if (solid_topology(model%elements%kind(e)) /= tri3) cycle
-            b = bodies%of_element(e)
-            smallest(b) = min(smallest(b), element_length(model, e))
-            if (example(b) == 0) example(b) = e
-         end do
-         do b = 1, bodies%n
-            if (example(b) == 0) cycle
-            long = maxval(bodies%high(:2, b) - bodies%low(:2, b))
-            thick = minval(bodies%high(:2, b) - bodies%low(:2, b))
-            if (long < slender*thick .or. thick >= few_through*smallest(b)) cycle
-            call add_remark(simulation, note_at(model%source, model%sections(model%elements &
-                  %section(example(b)))%place, 'warning: '//kind_name(model%elements &
-                  %kind(example(b)))//' are far too stiff in bending (they lock), and the body ' &
-                  //'of element '//to_text(model%elements%id(example(b)))//', '//to_text(long, 3) &
-                  //' long and '//to_text(thick, 3)//' thick, has at most ' &
-                  //to_text(nint(thick/smallest(b)))//' of them through its thickness' &
-                  //new_line('a')//'  cure: where it bends, mesh with '//bending_cure( &
-                  model%elements%kind(example(b)))))
-         end do
-      end associate
-   end subroutine doubt_bending
-
-   pure function bending_cure(kind) result(cure)
-      integer, intent(in) :: kind
-      character(len=:), allocatable :: cure
-      character(len=3) :: family
-
-      family = kind_name(kind)
-      cure = family//'6 or '//family//'8, two through the thickness do'
-   end function bending_cure
 
    !> A slave much coarser than its master, of which nodes may pass between the slave's.
    subroutine doubt_order(simulation)

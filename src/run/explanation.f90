@@ -8,7 +8,8 @@ module explanation
    use structure, only: diagonal_mass
    use structure_energy, only: strain_energy, group_kinetic_energy
    use continuum_bodies, only: body_list_type
-   use contact_outlook, only: outlook_type, look_out, surface_length, side_spacing
+   use contact_outlook, only: outlook_type, look_out, surface_length, side_spacing, &
+         duration_text
    use wave_speeds, only: longitudinal_speed, shear_speed, element_length, &
          speed_name, material_of
    use scene_setup, only: simulation_type
@@ -277,10 +278,32 @@ contains
                /simulation%model%steps(1)%dt, 3)//' increments)'
          text = text//' with speed '//short(outlook%closing_speed)
       end if
-      call self%add('', text)
-      if (outlook%body > 0 .and. outlook%duration > 0.0_wp) call self%add('', &
-            'a hit lasts about 2 L / c = '//short(outlook%duration)//', longer where bodies are ' &
-            //'round or soft')
+      call self%add('', text//not_foreseen(simulation, outlook%first > 0))
+      if (outlook%known) call self%add('', 'a hit lasts about '//duration_text(outlook, 4) &
+            //', longer where bodies are round or soft')
    end subroutine explain_gap
+
+   !> What a gap does beside closing by its speed and by gravity at once.
+   pure function not_foreseen(simulation, closes) result(text)
+      type(simulation_type), intent(in) :: simulation
+      logical, intent(in) :: closes              !! by those
+      character(len=:), allocatable :: text
+
+      text = ''
+      associate (step => simulation%model%steps(1))
+         if (size(step%base_motions) > 0) then
+            text = '*BASE MOTION'
+         else if (any(step%gravity%amplitude > 0)) then
+            text = 'gravity by its amplitude'
+         else
+            return
+         end if
+      end associate
+      if (closes) then
+         text = ', without '//text//', which moves it too'
+      else
+         text = '; '//text//' moves it later: when it closes is not foreseen here'
+      end if
+   end function not_foreseen
 
 end module explanation

@@ -11,6 +11,8 @@ module increment_end
    use run_log, only: log_type, note, write_status, has_line
    use progress, only: place_type, show_progress
    use increment_notices, only: notice_trouble
+   use shape_watch, only: watch_shapes
+   use contact_gain, only: warn_of_gain
    use stop_request, only: keep_watch, look_for_stop, stop_run
    use scene_setup, only: simulation_type
    use increment_checks, only: check_finite, check_energies, check_interpolation, check_balance, &
@@ -101,6 +103,9 @@ contains
                   place_of(simulation, course))
          end if
          call notice_trouble(output%seen, simulation, course, output%log)
+         if (last .or. motion%motion%t >= output%shape%next) call watch_shapes(output%shape, &
+               simulation, step%duration, last, output%log)
+         if (last) call warn_of_gain(scene, motion%motion%t, output%gain_told, output%log)
       end associate
    end subroutine record
 

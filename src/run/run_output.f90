@@ -7,6 +7,7 @@ module run_output
    use run_log, only: log_type
    use step_tally, only: tally_type
    use increment_notices, only: seen_type
+   use shape_watch, only: shape_type
    use publishing, only: publishing_type, is_due, publish_now, was_slow_to_start
    use stop_request, only: watch_type, start_looking
    use deck_check, only: preview_type
@@ -21,6 +22,8 @@ module run_output
       type(log_type) :: log
       type(tally_type) :: tally
       type(seen_type) :: seen                    !! counters that warnings come from
+      type(shape_type) :: shape                  !! largest rotation, strain
+      logical :: gain_told = .false.             !! that contact has added energy
       type(preview_type) :: preview
       type(publishing_type) :: publishing
       type(watch_type) :: watch

@@ -9,6 +9,7 @@ module step_explanation
    use critical_step, only: find_own_limits
    use continuum_bodies, only: body_list_type
    use contact_outlook, only: outlook_type
+   use penalty_springs, only: penalty_type, find_penalty
    use increment_count, only: count_increments
    use scene_setup, only: simulation_type
    use explanation_lines, only: lines_type, short
@@ -20,7 +21,8 @@ module step_explanation
    real(wp), parameter :: pi = acos(-1.0_wp)
    !> The step advised: so many increments in the longest period and in a contact; Courant number 1
    !> where waves count; this part of the critical step.
-   real(wp), parameter :: of_period = 20.0_wp, of_contact = 50.0_wp, of_critical = 0.9_wp
+   real(wp), parameter :: of_period = 20.0_wp, of_contact = 50.0_wp, of_critical = 0.9_wp, &
+         of_penalty = 20.0_wp
    real(wp), parameter :: of_period_in_order_4 = 5.0_wp
    integer, parameter :: most_elements = 50000
 
@@ -34,12 +36,18 @@ contains
       type(body_list_type), intent(in) :: bodies
       type(outlook_type), intent(in) :: outlooks(:)
       real(wp), intent(in) :: period
+      type(penalty_type) :: penalty
 
       associate (step => simulation%model%steps(i_step))
          if (step%procedure /= procedure_dynamic) return
          call explain_waves(self, simulation, step, bodies)
          call explain_contact(self, step, outlooks)
-         call recommend(self, simulation, step, bodies, outlooks, period)
+         call find_penalty(simulation, penalty)
+         if (penalty%row > 0) call self%add('', 'penalty: the mass '//short(penalty%mass) &
+               //' of node '//to_text(simulation%scene%rows%node_id(penalty%row)) &
+               //' has the period '//short(penalty%period)//' on its spring' &
+               //increments(step, penalty%period)//'; contact lasts half of it')
+         call recommend(self, simulation, step, bodies, outlooks, [period, penalty%period])
       end associate
    end subroutine explain_step
 
@@ -96,6 +104,8 @@ contains
                   //increments(step, period)
          else if (costly) then
             text = 'longest period: too costly to find here, see *FREQUENCY'
+         else if (swings_closed(simulation)) then
+            text = 'longest period: none while all gaps are open; springs work once one is closed'
          else
             text = 'longest period: none, nothing is held or connected elastically'
          end if
@@ -106,6 +116,14 @@ contains
       end associate
       call self%add('', text)
    end subroutine explain_periods
+
+   !> Whether a model that has no period of its own has springs with mass on them all the same:
+   !> those to contact nodes without mass, which go with the mass until they touch.
+   pure logical function swings_closed(simulation)
+      type(simulation_type), intent(in) :: simulation
+
+      swings_closed = simulation%scene%rows%n > 0 .and. maxval(simulation%critical%omega) > 0.0_wp
+   end function swings_closed
 
    !> ", 157 increments" of a step with fixed ones.
    pure function increments(step, time) result(text)
@@ -183,27 +201,30 @@ contains
    end function shortest_contact
 
    !> The least of what periods, waves, contacts and stability allow, with its reason.
-   subroutine recommend(self, simulation, step, bodies, outlooks, period)
+   subroutine recommend(self, simulation, step, bodies, outlooks, periods)
       type(lines_type), intent(inout) :: self
       type(simulation_type), intent(in) :: simulation
       type(step_type), intent(in) :: step
       type(body_list_type), intent(in) :: bodies
       type(outlook_type), intent(in) :: outlooks(:)
-      real(wp), intent(in) :: period
-      real(wp) :: best(4), parts
+      real(wp), intent(in) :: periods(2)         !! the longest, that on penalty springs
+      real(wp) :: best(6), parts
       character(len=:), allocatable :: text
       integer :: i
 
       best = huge(1.0_wp)
       parts = merge(of_period_in_order_4, of_period, step%order == 4)
-      if (period > 0.0_wp) best(1) = period/parts
+      if (periods(1) > 0.0_wp) best(1) = periods(1)/parts
       if (shortest_contact(outlooks) < huge(1.0_wp)) then
          best(2) = shortest_contact(outlooks)/of_contact
-         best(3) = shortest_time(bodies)
+         if (.not. all(outlooks%swings .or. .not. outlooks%known)) best(3) = shortest_time(bodies)
       end if
       associate (explicit => simulation%critical(scheme_explicit)%step)
          if (explicit < huge(1.0_wp)) best(4) = of_critical*explicit
       end associate
+      if (.not. periods(1) > 0.0_wp .and. swings_closed(simulation)) best(6) = 2.0_wp*pi &
+            /maxval(simulation%critical%omega)/of_period
+      if (periods(2) < huge(1.0_wp)) best(5) = periods(2)/of_penalty
       i = minloc(best, dim=1)
       if (.not. best(i) < huge(1.0_wp)) then
          call self%add('', 'recommended step: nothing here vibrates; choose dt by loads and output')
@@ -217,6 +238,10 @@ contains
          text = 'contact time / 50'
       case (3)
          text = 'Courant number 1: waves of contact go from element to element'
+      case (5)
+         text = 'period on the penalty spring / 20'
+      case (6)
+         text = 'shortest period / 20, that of closed gaps'
       case default
          text = '0.9 of the critical step'
       end select

@@ -101,6 +101,46 @@ _, text = explain(INPUT/'ball'/'ball.inp')
 shows(text, 'ball', 'touches after', math.sqrt(0.2))
 shows(text, 'ball', 'with speed', math.sqrt(20.0))
 
+# a mass of 2 on a penalty spring of 1e6
+deck = scratch_folder() / 'penalty.inp'
+deck.write_text('*NODE\n1, 0., 1.\n*ELEMENT, TYPE=MASS, ELSET=A\n1, 1\n*MASS, ELSET=A\n2.\n'
+                '*SURFACE, NAME=B, TYPE=NODE\n1\n*RIGID SURFACE, NAME=F, TYPE=PLANE\n0., 0.\n0., 1.\n'
+                '*SURFACE INTERACTION, NAME=I\n*IMPACT, METHOD=PENALTY, STIFFNESS=1e6\n'
+                '*CONTACT PAIR, INTERACTION=I\nB, F\n*STEP\n*DYNAMIC, DIRECT\n0.01, 2.\n'
+                '*DLOAD\n, GRAV, 9.81, 0., -1.\n*NODE PRINT\nU\n*END STEP\n')
+_, text = explain(deck)
+period = 2.0*math.pi*math.sqrt(2.0/1e6)
+shows(text, 'penalty', 'has the period', period)
+shows(text, 'penalty', 'recommended step:', period/20.0, 3)
+checks.true('nothing here vibrates' not in text, 'penalty: a step is recommended')
+
+# a mass of 2 with a spring of 200 to a contact node without mass: it swings while the node touches
+deck = scratch_folder() / 'tip.inp'
+deck.write_text('*NODE\n1, 0., 1.\n2, 0., 0.5\n*ELEMENT, TYPE=MASS, ELSET=A\n1, 1\n*MASS, ELSET=A\n2.\n'
+                '*ELEMENT, TYPE=SPRINGA, ELSET=S\n2, 1, 2\n*SPRING, ELSET=S\n200.\n*BOUNDARY\n1, 1\n2, 1\n'
+                '*SURFACE, NAME=B, TYPE=NODE\n2\n*RIGID SURFACE, NAME=F, TYPE=PLANE\n0., 0.\n0., 1.\n'
+                '*SURFACE INTERACTION, NAME=I\n*IMPACT\n*CONTACT PAIR, INTERACTION=I\nB, F\n'
+                '*INITIAL CONDITIONS, TYPE=VELOCITY\n1, 2, -1.\n2, 2, -1.\n*STEP\n*DYNAMIC, DIRECT\n'
+                '0.005, 1.5\n*NODE PRINT\nU\n*END STEP\n')
+_, text = explain(deck)
+period = 2.0*math.pi*math.sqrt(2.0/200.0)
+checks.true('longest period: none while all gaps are open' in text, 'massless tip: no period while it is free')
+checks.true('nothing' not in text, 'massless tip: something vibrates')
+shows(text, 'massless tip', 'shortest', period)
+shows(text, 'massless tip', 'recommended step:', period/20.0, 3)
+
+# what a base motion does to a gap is not foreseen, and that is said
+for speed, words in ((0.0, 'not closing at the start; *BASE MOTION moves it later'),
+                     (0.5, 'touches after 2 (200 increments) with speed 0.5, without *BASE MOTION, which moves it too')):
+    deck = scratch_folder() / 'base.inp'
+    deck.write_text('*NODE\n1, 0., 0.\n*ELEMENT, TYPE=MASS, ELSET=A\n1, 1\n*MASS, ELSET=A\n2.\n'
+                    '*AMPLITUDE, NAME=G\n0., 1.\n*SURFACE, NAME=B, TYPE=NODE\n1\n'
+                    '*RIGID SURFACE, NAME=F, TYPE=PLANE\n-1., 0.\n1., 0.\n*SURFACE INTERACTION, NAME=I\n*IMPACT\n'
+                    f'*CONTACT PAIR, INTERACTION=I\nB, F\n*INITIAL CONDITIONS, TYPE=VELOCITY\n1, 1, -{speed}\n'
+                    '*STEP\n*DYNAMIC, DIRECT\n0.01, 1.5\n*BASE MOTION, AMPLITUDE=G, DOF=1\n2.\n'
+                    '*NODE PRINT\nU\n*END STEP\n')
+    checks.true(words in explain(deck)[1], f'base motion, speed {speed}: said')
+
 # masses that nothing holds have no period
 _, text = explain(INPUT/'cradle'/'cradle.inp')
 checks.true('longest period: none' in text, 'cradle: no period')

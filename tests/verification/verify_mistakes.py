@@ -1,6 +1,7 @@
 """Typical mistakes that are legal decks: each gets a warning that names the cure, in `carom check`, on
 the terminal of `carom run` and in its log; with the cure the warning goes. Mistakes that are errors are
 in tests/deck_errors. The decks of input/ get no such warning."""
+import math
 import subprocess
 import sys
 from pathlib import Path
@@ -119,6 +120,15 @@ mistake('a step of 9.5 increments a contact', INPUT/'bar'/'bar_implicit.inp', IN
         'the step 0.07 is too large for a contact that lasts about 2 L / c = 0.667: that is 9.5 increments',
         'take a step of about 0.013', options=('--define', 'dt=0.07'))
 
+# a mass of 2 falls on a spring of 1e6: its period there is 2 pi sqrt(2/1e6) = 0.00889
+BOUNCE = ('*NODE\n1, 0., 1.\n*ELEMENT, TYPE=MASS, ELSET=A\n1, 1\n*MASS, ELSET=A\n2.\n'
+          '*SURFACE, NAME=B, TYPE=NODE\n1\n*RIGID SURFACE, NAME=F, TYPE=PLANE\n0., 0.\n0., 1.\n'
+          + pair('B', 'F', '*IMPACT, METHOD=PENALTY, STIFFNESS=1e6\n')
+          + step(dt='{}', end='2.', loads='*DLOAD\n, GRAV, 9.81, 0., -1.\n'))
+mistake('a step that skips a penalty spring', BOUNCE.format('0.01'), BOUNCE.format('4.4e-4'),
+        'the mass 2 there has the period 0.00889 on STIFFNESS=1e6, 0.89 increments',
+        'a step of about 0.00044', 'METHOD=TRANSFORMATION')
+
 # 6: slave and master exchanged
 FINE = ONE + block(2, (0., 2.), (1.1, 2.1), 12, 2) + section() + section(2)
 mistake('the coarse surface is the slave', FINE + pair('TOP1', 'LOW2') + step(),
@@ -144,6 +154,19 @@ mistake('a restitution on a continuum', ONE + section() + plane()
         + pair('LOW1', 'FLOOR', '*IMPACT, RESTITUTION=0.8\n') + step(),
         ONE + section() + plane() + pair('LOW1', 'FLOOR', '*IMPACT\n') + step(),
         'RESTITUTION=0.8 acts on 5 nodes of a body that deforms (LOW1)', 'leave RESTITUTION away')
+
+# a mass of 2 moved along 1 - cos 2t, by points: its reaction has no inertia, that of a velocity has
+CURVE = ''.join(f'{0.05*i!r}, {1.0 - math.cos(0.1*i)!r}\n' for i in range(41))
+RAMP = '0., 0.\n1., 1.\n2., 1.\n'
+MOVED = ('*NODE, NSET=N\n1, 0., 0.\n2, 1., 0.\n*ELEMENT, TYPE=MASS, ELSET=A\n1, 1\n2, 2\n*MASS, ELSET=A\n2.\n'
+         '*ELEMENT, TYPE=SPRING2, ELSET=S\n3, 1, 2\n*SPRING, ELSET=S\n1, 1\n1.\n*AMPLITUDE, NAME=WAY\n{}')
+DRIVEN = step(dt='0.01', end='2.', loads='*BOUNDARY, AMPLITUDE=WAY{}\n1, 1, 1, 1.\n', output='*NODE PRINT\nU, RF\n')
+mistake('the reaction of a displacement by points', MOVED.format(CURVE) + DRIVEN.format(''),
+        MOVED.format(CURVE) + DRIVEN.format(', TYPE=VELOCITY'), 'goes straight from point to point of WAY',
+        'RF lacks the inertia of the mass 2 there', 'TYPE=VELOCITY or TYPE=ACCELERATION')
+checks.true('warning: ' not in answers(MOVED.format(RAMP) + DRIVEN.format(''))[0], 'a ramp has no inertia to miss')
+checks.true('warning: ' not in answers((MOVED.format(CURVE) + DRIVEN.format('')).replace('U, RF', 'U'))[0],
+            'no warning where RF is not asked for')
 
 # 10: no output
 mistake('no output', ONE + section() + step(output=''), ONE + section() + step(),
