@@ -222,8 +222,10 @@ def check_allowed():
     same_as_whole(SMALL + SECOND, copy, 'a step added')
     before = (FOLDER / 'small.h5').read_bytes()
     said, copy = restart_small(SMALL)
-    checks.true('nothing is left to do' in said and copy.read_bytes() == before,
-                'a run that is complete is left alone')
+    aloud = subprocess.run([PROGRAM, 'run', FOLDER / 'later.inp', '--restart', copy],
+                           capture_output=True, text=True)
+    checks.true('nothing is left to do' in aloud.stdout and said == '' and aloud.returncode == 0
+                and copy.read_bytes() == before, 'a run that is complete is left alone')
     new = FOLDER / 'new.h5'
     restart_small(longer, '-o', new)
     same_as_whole(longer, new, 'in a new file')
