@@ -147,7 +147,7 @@ contains
          n_frames = max(1.0_wp, min(256.0_wp, 65536.0_wp/max(1.0_wp, n_nodes, n_cells)))
       end associate
       self%items(item_frames) = library_bytes + real_bytes*(n_values*n_frames + n_sums &
-            + 8.0_wp*real(simulation%scene%system%structure%map%n_freedoms, wp))
+            + 6.0_wp*real(simulation%scene%system%structure%map%n_freedoms, wp))
       n_columns = node_columns(plan, simulation%scene%system%structure%map%freedom) &
             + 6.0_wp*real(count(plan%element_print), wp)
       self%items(item_rows) = real_bytes*min(4096.0_wp*n_columns, max(2.0_wp**21, &
