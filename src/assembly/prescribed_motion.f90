@@ -124,7 +124,8 @@ contains
    end function new_motion
 
    !> What an earlier step's condition does in a later one: goes on by total time, or with the
-   !> displacement, velocity or acceleration that it has at the end of its step.
+   !> displacement, velocity or acceleration that it has at the end of its step, from where
+   !> `start_motions` finds it.
    pure subroutine hold(motion, t)
       type(motion_type), intent(inout) :: motion
       real(wp), intent(in) :: t
@@ -140,8 +141,6 @@ contains
       case default
          motion%value = a
       end select
-      motion%d_start = d
-      motion%v_start = v
       motion%has_amplitude = .false.
       motion%ramped = .false.
       motion%t_start = t

@@ -3,8 +3,8 @@ module overruled_starts
    use kinds, only: wp
    use memory_shortage, only: check_allocation
    use places, only: note_at
-   use histories, only: boundary_type, nodal_value_type
-   use histories, only: motion_displacement, motion_velocity, motion_acceleration
+   use histories, only: boundary_type, nodal_value_type, motion_displacement, motion_velocity, &
+         motion_acceleration
    use steps, only: procedure_dynamic
    use model, only: model_type
    use source_reader, only: add_note

@@ -15,7 +15,7 @@ module column_table
    implicit none
    private
 
-   public :: column_table_type, text_length
+   public :: column_table_type, text_length, column_bytes
 
    !> Characters of a text at most: a contact pair is named by its two surfaces.
    integer, parameter :: text_length = 2*name_length + 1
@@ -278,6 +278,14 @@ contains
             + self%texts%n*(int(text_length, int64)*chunk_rows + entry))
       if (n_chunks > 0) bytes = bytes + table*(self%reals%n + self%integers%n + self%texts%n)
    end function bytes_needed
+
+   !> Bytes of a column of reals in the file, chunks and what the library writes about it, measured.
+   pure real(wp) function column_bytes(rows)
+      real(wp), intent(in) :: rows
+      real(wp), parameter :: about_it = 2600.0_wp
+
+      column_bytes = 8.0_wp*chunk_rows*real(ceiling(rows/chunk_rows, int64), wp) + about_it
+   end function column_bytes
 
    !> Allocates the memory for the rows; the columns are fixed from here on.
    subroutine start(self)

@@ -4,7 +4,7 @@ module mode_recorder
    use errors, only: error_type
    use eigen_analysis, only: modes_type
    use contact_pairs, only: contact_pair_list_type
-   use impact_scene, only: scene_type, contact_motion_type
+   use impact_scene, only: scene_type, contact_motion_type, new_contact_motion
    use gap_probe, only: not_a_number
    use snapshot, only: snapshot_type, take_snapshot
    use grid_recorder, only: record_frame
@@ -31,15 +31,8 @@ contains
       call write_numbers(self, modes, error)
       if (allocated(error)) return
       ! a mode's stresses are those of its shape alone, and gaps mean nothing in it
-      shape = motion
-      shape%motion%v = 0.0_wp
-      shape%motion%a = 0.0_wp
-      shape%motion%history = 0.0_wp
-      shape%lambda = 0.0_wp
-      shape%tau = 0.0_wp
-      shape%slip = 0.0_wp
-      shape%force = 0.0_wp
-      shape%touching = .false.
+      call new_contact_motion(shape, size(motion%motion%d), scene%rows%n, &
+            size(motion%motion%history))
       do i = 1, modes%n
          shape%motion%d = modes%shape(:, i)
          shape%motion%t = modes%frequency(i)

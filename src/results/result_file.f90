@@ -120,7 +120,7 @@ contains
             'Newmark beta of the step with the event           ']
       integer :: i, longest
 
-      longest = max(1, min(text_length, maxval([0, len_trim(list%names)])))
+      longest = max(1, maxval([0, len_trim(list%names)]))
       call self%events%create(self%file, '/events', 'impacts, captures and releases', error)
       do i = 1, size(names)
          if (allocated(error)) return

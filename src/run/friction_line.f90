@@ -6,8 +6,7 @@ module friction_line
    use text, only: to_text
    use places, only: fail_at
    use model, only: model_type
-   use histories, only: nodal_value_type, boundary_type
-   use contact_pairs, only: contact_pair_list_type, contact_row_type, row_fixed
+   use contact_pairs, only: contact_pair_list_type, row_fixed
    use constraint_rows, only: rows_type
    implicit none
    private
@@ -59,13 +58,16 @@ contains
       integer :: s, i
 
       driven = .false.
-      call mark_values(model%initial_velocities)
-      call mark_conditions(model%boundaries)
+      associate (start => model%initial_velocities, held => model%boundaries)
+         call mark(start%dof, start%node, start%value)
+         call mark(held%dof, held%node, held%value)
+      end associate
       do s = 1, size(model%steps)
          associate (step => model%steps(s))
-            call mark_values(step%initial_velocities)
-            call mark_values(step%loads)
-            call mark_conditions(step%boundaries)
+            call mark(step%initial_velocities%dof, step%initial_velocities%node, &
+                  step%initial_velocities%value)
+            call mark(step%loads%dof, step%loads%node, step%loads%value)
+            call mark(step%boundaries%dof, step%boundaries%node, step%boundaries%value)
             do i = 1, size(step%gravity)
                if (abs(step%gravity(i)%acceleration(3)) > 0.0_wp) driven = .true.
             end do
@@ -76,25 +78,12 @@ contains
 
    contains
 
-      subroutine mark_values(values)
-         type(nodal_value_type), intent(in) :: values(:)
-         integer :: k
+      subroutine mark(dof, node, value)
+         integer, intent(in) :: dof(:), node(:)
+         real(wp), intent(in) :: value(:)
 
-         do k = 1, size(values)
-            if (values(k)%dof == 3 .and. abs(values(k)%value) > 0.0_wp) driven(values(k)%node) &
-                  = .true.
-         end do
-      end subroutine mark_values
-
-      subroutine mark_conditions(conditions)
-         type(boundary_type), intent(in) :: conditions(:)
-         integer :: k
-
-         do k = 1, size(conditions)
-            if (conditions(k)%dof == 3 .and. abs(conditions(k)%value) > 0.0_wp) driven( &
-                  conditions(k)%node) = .true.
-         end do
-      end subroutine mark_conditions
+         driven(pack(node, dof == 3 .and. abs(value) > 0.0_wp)) = .true.
+      end subroutine mark
 
    end subroutine mark_driven
 

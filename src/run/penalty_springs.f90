@@ -8,7 +8,10 @@ module penalty_springs
    implicit none
    private
 
-   public :: penalty_type, find_penalty
+   public :: penalty_type, find_penalty, enough_of_penalty
+
+   !> Increments in a period on a penalty spring with which a hit keeps the energy.
+   real(wp), parameter :: enough_of_penalty = 20.0_wp
 
    real(wp), parameter :: pi = acos(-1.0_wp)
 

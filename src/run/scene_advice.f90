@@ -10,6 +10,7 @@ module scene_advice
    use prescribed_motion, only: are_at_rest
    use scene_setup, only: simulation_type
    use scene_features, only: feature_list_type, kind_solution, kind_energies
+   use column_table, only: column_bytes
    use output_cost, only: bytes_text
    implicit none
    private
@@ -177,14 +178,6 @@ contains
                //': NSET= or ELSET= on the PRINT cards, or a larger FREQUENCY, leaves fewer')
       end associate
    end subroutine advise_output
-
-   !> Bytes of a column in the file: chunks of 512 rows, and what the library writes about it.
-   pure real(wp) function column_bytes(rows)
-      real(wp), intent(in) :: rows
-      real(wp), parameter :: chunk_rows = 512.0_wp, about_it = 2600.0_wp
-
-      column_bytes = 8.0_wp*chunk_rows*real(ceiling(rows/chunk_rows), wp) + about_it
-   end function column_bytes
 
    !> What makes frames take less: where there are no more than enough of them, less in each.
    pure function fewer_frames(features) result(advice)

@@ -10,7 +10,7 @@ module step_doubts
    use continuum_bodies, only: body_list_type
    use contact_outlook, only: outlook_type, look_out, duration_text
    use driven_reactions, only: doubt_reactions
-   use penalty_springs, only: penalty_type, find_penalty
+   use penalty_springs, only: penalty_type, find_penalty, enough_of_penalty
    use scene_setup, only: simulation_type, add_remark
    implicit none
    private
@@ -21,9 +21,9 @@ module step_doubts
    !> advised; the trapezoidal rule lengthens periods by 0.8 and 0.13 %.
    real(wp), parameter :: least_increments = 20.0_wp, least_of_contact = 10.0_wp, &
          good_increments = 50.0_wp
-   !> Increments in a period of a mass on its penalty spring: with fewer than the first a hit adds
-   !> some hundredths of the energy and more, with 0.4 and fewer many times it.
-   real(wp), parameter :: least_of_penalty = 4.0_wp, good_of_penalty = 20.0_wp
+   !> Increments in a period of a mass on its penalty spring: with fewer a hit adds some hundredths
+   !> of the energy and more, with 0.4 and fewer many times it.
+   real(wp), parameter :: least_of_penalty = 4.0_wp
    !> With ORDER=4 so many times fewer do.
    real(wp), parameter :: of_fourth_order = 4.0_wp
 
@@ -114,8 +114,8 @@ contains
             //to_text(penalty%mass, 3)//' there has the period '//to_text(penalty%period, 3) &
             //' on STIFFNESS='//to_text(penalty%stiffness)//', '//to_text(ratio, 2) &
             //' increments; contact may give energy to it'//new_line('a') &
-            //'  cure: a step of about '//to_text(penalty%period/good_of_penalty, 2) &
-            //', STIFFNESS='//to_text(penalty%stiffness*(ratio/good_of_penalty)**2, 2) &
+            //'  cure: a step of about '//to_text(penalty%period/enough_of_penalty, 2) &
+            //', STIFFNESS='//to_text(penalty%stiffness*(ratio/enough_of_penalty)**2, 2) &
             //', or METHOD=TRANSFORMATION'))
    end subroutine doubt_penalty
 

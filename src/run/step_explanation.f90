@@ -9,7 +9,7 @@ module step_explanation
    use critical_step, only: find_own_limits
    use continuum_bodies, only: body_list_type
    use contact_outlook, only: outlook_type
-   use penalty_springs, only: penalty_type, find_penalty
+   use penalty_springs, only: penalty_type, find_penalty, enough_of_penalty
    use increment_count, only: count_increments
    use scene_setup, only: simulation_type
    use explanation_lines, only: lines_type, short
@@ -21,8 +21,7 @@ module step_explanation
    real(wp), parameter :: pi = acos(-1.0_wp)
    !> The step advised: so many increments in the longest period and in a contact; Courant number 1
    !> where waves count; this part of the critical step.
-   real(wp), parameter :: of_period = 20.0_wp, of_contact = 50.0_wp, of_critical = 0.9_wp, &
-         of_penalty = 20.0_wp
+   real(wp), parameter :: of_period = 20.0_wp, of_contact = 50.0_wp, of_critical = 0.9_wp
    real(wp), parameter :: of_period_in_order_4 = 5.0_wp
    integer, parameter :: most_elements = 50000
 
@@ -224,7 +223,7 @@ contains
       end associate
       if (.not. periods(1) > 0.0_wp .and. swings_closed(simulation)) best(6) = 2.0_wp*pi &
             /maxval(simulation%critical%omega)/of_period
-      if (periods(2) < huge(1.0_wp)) best(5) = periods(2)/of_penalty
+      if (periods(2) < huge(1.0_wp)) best(5) = periods(2)/enough_of_penalty
       i = minloc(best, dim=1)
       if (.not. best(i) < huge(1.0_wp)) then
          call self%add('', 'recommended step: nothing here vibrates; choose dt by loads and output')
