@@ -52,7 +52,11 @@ contains
       do i = 1, size(model%steps)
          lumped_default = lumped_default .or. model%steps(i)%explicit
       end do
-      call build_groups(self%groups, model, lumped_default, error, automatic)
+      if (present(automatic)) then
+         call build_groups(self%groups, model, lumped_default, error, automatic)
+      else
+         call build_groups(self%groups, model, lumped_default, error)
+      end if
       if (allocated(error)) return
       call redistribute_mass(self%groups, model, error)
       if (allocated(error)) return

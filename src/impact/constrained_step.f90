@@ -61,7 +61,8 @@ contains
       call predict_motion(scene%system, from%motion, dt, beta, to%motion)
       fixed = fixed_force(scene%system, from%motion, to%motion)
       call start_near(scene%system, from%motion, dt, beta, to%motion)
-      call describe_step(scene, dt, beta, step, held)
+      call describe_step(scene, dt, beta, step)
+      if (present(held)) step%held = held
       progress%to_displacement = step%to_displacement
       do iteration = 1, scene%system%max_iterations
          psi = residual(scene%system, fixed, from%motion%history, to%motion)
@@ -124,16 +125,14 @@ contains
    end subroutine push_apart
 
    !> What contact needs to know of a dynamic step.
-   subroutine describe_step(scene, dt, beta, step, held)
+   subroutine describe_step(scene, dt, beta, step)
       type(scene_type), intent(in) :: scene
       real(wp), intent(in) :: dt, beta
       type(contact_step_type), intent(out) :: step
-      logical, intent(in), optional :: held(:)
 
       step%to_displacement = max(beta, smallest_beta)*dt**2
       step%explicit = .not. beta > 0.0_wp
       step%to_velocity = scene%system%newmark%gamma*dt
-      if (present(held)) step%held = held
    end subroutine describe_step
 
    !> Newton's method has converged when both the correction and the residual are small, or have
