@@ -1,7 +1,7 @@
 !> carom: reads the command, runs it, reports an error and stops with its status. Of several ranks
 !> the first does so, the others help it to solve.
 program carom
-   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+   use, intrinsic :: iso_fortran_env, only: error_unit
    use, intrinsic :: iso_c_binding, only: c_int
    use errors, only: error_type, status_done, status_interrupted
    use command_line, only: command_type, read_command, usage_text, &
@@ -14,6 +14,7 @@ program carom
    use deck_check, only: check_deck
    use stop_signals, only: catch_signals
    use threads, only: set_threads
+   use standard_output, only: print_line, flush_standard_output, check_standard_output
    use limited_start, only: start_without_pool
    use parallel_ranks, only: start_ranks, end_ranks, my_rank
    use mumps_solver, only: serve_rank_zero, dismiss_ranks
@@ -29,7 +30,7 @@ program carom
 
    type(command_type) :: command
    type(json_type) :: report
-   type(error_type), allocatable :: error
+   type(error_type), allocatable :: error, lost
    integer :: status
 
    call start_without_pool()
@@ -54,23 +55,25 @@ program carom
       case (command_reference)
          call print_help(command%topic, error)
       case (command_version)
-         write (output_unit, '(a)') 'carom '//version_text()
+         call print_line('carom '//version_text())
       case default
-         write (output_unit, '(a)') usage_text()
+         call print_line(usage_text())
       end select
-   end if
-   status = status_done
-   if (allocated(error)) then
-      ! what has been said goes first, where both go to one place
-      flush (output_unit, iostat=status)
-      if (status /= 0) status = error%status
-      write (error_unit, '(a)') trim(merge('stopped:', 'error:  ', error%status == &
-            status_interrupted))//' '//error%message
-      status = error%status
    end if
    if (command%json) then
       call close_report(report, error)
-      write (output_unit, '(a)') report%text()
+      call print_line(report%text())
+   end if
+   ! a run's results are in its files, those of all else are what was printed
+   if (command%json .or. command%kind /= command_run) call check_standard_output(lost)
+   if (allocated(lost) .and. .not. allocated(error)) call move_alloc(lost, error)
+   status = status_done
+   if (allocated(error)) then
+      ! what has been said goes first, where both go to one place
+      call flush_standard_output()
+      write (error_unit, '(a)') trim(merge('stopped:', 'error:  ', error%status == &
+            status_interrupted))//' '//error%message
+      status = error%status
    end if
    call dismiss_ranks(status)
    call end_ranks()

@@ -11,8 +11,8 @@ module libc_files
 
    public :: statx_type, limit_type
    public :: c_access, c_close, c_copy_range, c_creat, c_dup, c_errno, c_execv, c_fallocate, &
-         c_fclose, c_ferror, c_fflush, c_fileno, c_flock, c_fopen, c_free, c_fsync, c_ftruncate, &
-         c_fwrite, c_getrlimit, c_mkdir
+         c_fclose, c_ferror, c_fflush, c_fileno, c_find_variable, c_flock, c_fopen, c_free, &
+         c_fsync, c_ftruncate, c_fwrite, c_getrlimit, c_mkdir
    public :: c_pread, c_realpath, c_rename, c_setenv, c_signal, c_statx, c_strerror, c_strlen, &
          c_unlink, c_write
 
@@ -106,6 +106,14 @@ module libc_files
          type(c_ptr), value :: stream
          integer(c_int) :: status
       end function c_fclose
+
+      function c_find_variable(library, name) bind(c, name='dlsym') result(address)
+         import :: c_char, c_ptr
+         implicit none
+         type(c_ptr), value :: library   ! null: any
+         character(kind=c_char), intent(in) :: name(*)
+         type(c_ptr) :: address
+      end function c_find_variable
 
       function c_fwrite(bytes, size, n, stream) bind(c, name='fwrite') result(n_written)
          import :: c_char, c_ptr, c_size_t

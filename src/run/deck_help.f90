@@ -1,11 +1,11 @@
 !> `carom help`: the deck reference of input/README.md, an entry a card, on the terminal.
 module deck_help
-   use, intrinsic :: iso_fortran_env, only: output_unit
    use errors, only: error_type, new_error, status_usage
    use memory_shortage, only: check_allocation
    use card_rules, only: n_rules, rule_text
    use words, only: word_length, squeezed, advice
    use display, only: displayed
+   use standard_output, only: print_line
    use reference_text, only: n_reference_lines, reference_line
    implicit none
    private
@@ -30,7 +30,7 @@ contains
 
       if (topic == table_topic) then
          do i = 1, n_rules
-            write (output_unit, '(a)') rule_text(i)
+            call print_line(trim(rule_text(i)))
          end do
          return
       end if
@@ -40,7 +40,7 @@ contains
          call help_entry(topic, text, error)
          if (allocated(error)) return
       end if
-      write (output_unit, '(a)') text
+      call print_line(text)
    end subroutine print_help
 
    !> All entries by groups, each with its first sentence.

@@ -1,6 +1,5 @@
 !> A line of progress, on a terminal only, rewritten a few times a second.
 module progress
-   use, intrinsic :: iso_fortran_env, only: output_unit
    use, intrinsic :: iso_c_binding, only: c_int
    use kinds, only: wp, int64
    use clock, only: seconds_now
@@ -8,6 +7,7 @@ module progress
    use steps, only: step_type, procedure_frequency
    use increment_count, only: count_increments
    use memory_shortage, only: check_allocation
+   use standard_output, only: print_text, flush_standard_output
    implicit none
    private
 
@@ -162,12 +162,9 @@ contains
    !> A terminal that is gone is no reason to stop.
    subroutine write_out(text)
       character(len=*), intent(in) :: text
-      integer :: status
 
-      write (output_unit, '(a)', advance='no', iostat=status) text
-      if (status /= 0) return
-      flush (output_unit, iostat=status)
-      if (status /= 0) return
+      call print_text(text)
+      call flush_standard_output()
    end subroutine write_out
 
    !> Ends the line: at 100 %, or where the run has stopped.

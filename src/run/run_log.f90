@@ -1,6 +1,5 @@
 !> The log and status files beside the result, and what the terminal shows.
 module run_log
-   use, intrinsic :: iso_fortran_env, only: output_unit
    use kinds, only: wp, int64
    use errors, only: error_type
    use state_archive, only: archive_type
@@ -9,6 +8,7 @@ module run_log
    use notices, only: notice_list_type, is_warning, without_mark
    use progress, only: progress_type
    use file_calls, only: look_at, look_at_open, is_same
+   use standard_output, only: print_line, flush_standard_output
    use text_file, only: text_file_type, open_text, write_line, check_text, close_text
    implicit none
    private
@@ -135,18 +135,15 @@ contains
    subroutine tell(self, line)
       type(log_type), intent(in) :: self
       character(len=*), intent(in) :: line
-      integer :: status
 
       if (.not. self%terminal) return
       if (self%progress%drawn) then
-         write (output_unit, '(a)', iostat=status) achar(13)//achar(27)//'[K'//line
+         call print_line(achar(13)//achar(27)//'[K'//line)
       else
-         write (output_unit, '(a)', iostat=status) line
+         call print_line(line)
       end if
       ! a terminal that is gone is no reason to stop
-      if (status /= 0) return
-      flush (output_unit, iostat=status)
-      if (status /= 0) return
+      call flush_standard_output()
    end subroutine tell
 
    !> A note on the deck, or a warning if it says so, before the first increment.

@@ -165,6 +165,21 @@ def check_logs(checks):
                 'nobody reads the output: the run ends all the same')
 
 
+def check_standard_output(checks):
+    """Standard output that cannot be written is an error where it is the result."""
+    place = Place()
+    for words in (['--version'], ['--help'], ['help'], ['help', '--table'], ['check', 'deck.inp'],
+                  ['check', 'deck.inp', '--explain'], ['check', 'deck.inp', '--json'],
+                  ['run', 'deck.inp', '--json']):
+        with open('/dev/full', 'w', encoding='ascii') as full:
+            done = subprocess.run([PROGRAM, *words], cwd=place.folder, stdout=full,
+                                  stderr=subprocess.PIPE, text=True, check=False)
+        checks.true(done.returncode == 3 and 'cannot write to standard output: ' in done.stderr
+                    and '\n  cure: ' in done.stderr,
+                    f"{' '.join(words)} > /dev/full: status {done.returncode}, {done.stderr!r}")
+    saved(checks, place, (501, 501, 501), 'run --json > /dev/full')
+
+
 def check_decks(checks):
     """Decks that cannot be read, and results that would replace what the deck is read from."""
     refused(checks, Place().run('-o', 'out.h5', deck='no.inp'), ["cannot open 'no.inp'"],
@@ -236,6 +251,7 @@ def main():
     check_directories(checks)
     check_existing(checks)
     check_logs(checks)
+    check_standard_output(checks)
     check_decks(checks)
     check_leftovers(checks)
     check_no_space(checks)
