@@ -39,7 +39,7 @@ module column_table
       integer :: n_held = 0     ! rows of them still in memory
       logical :: started = .false.
       real(wp), allocatable :: held_reals(:, :)                     ! (row, column)
-      integer, allocatable :: held_integers(:, :)                   ! (row, column)
+      integer(int64), allocatable :: held_integers(:, :)            ! (row, column)
       character(len=text_length), allocatable :: held_texts(:, :)   ! (row, column)
    contains
       procedure :: create
@@ -163,7 +163,7 @@ contains
       real(wp), intent(in) :: values(:)
       type(error_type), allocatable, intent(out) :: error   !! status_file
 
-      call self%append_mixed(file, values, [integer ::], [character(len=1) ::], error)
+      call self%append_mixed(file, values, [integer(int64) ::], [character(len=1) ::], error)
    end subroutine append_reals
 
    !> Appends a row to a table of several kinds of columns.
@@ -171,7 +171,7 @@ contains
       class(column_table_type), intent(inout) :: self
       type(hdf5_file_type), intent(inout) :: file
       real(wp), intent(in) :: values(:)
-      integer, intent(in) :: integers(:)
+      integer(int64), intent(in) :: integers(:)
       character(len=*), intent(in) :: texts(:)
       !> status_file; a row that does not fit; status_numerical: a value that is not finite
       type(error_type), allocatable, intent(out) :: error

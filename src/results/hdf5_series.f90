@@ -78,6 +78,10 @@ contains
       failed = status(1) < 0
       if (failed) return
       call shape_of(dataset, dims, failed)
+      if (failed) then
+         call h5dclose_f(dataset, status(6))
+         return
+      end if
       rank = size(dims)
       dims(rank) = dims(rank) + n_values/product(dims(:rank - 1))
       call h5dset_extent_f(dataset, dims, status(2))
@@ -109,6 +113,10 @@ contains
       failed = status(1) < 0
       if (failed) return
       call shape_of(dataset, dims, failed)
+      if (failed) then
+         call h5dclose_f(dataset, status(5))
+         return
+      end if
       call select_last(dataset, dims, n_values, space, block, status(2))
       call h5dread_f(dataset, storage%in_memory, memory, status(3), mem_space_id=block, &
             file_space_id=space)

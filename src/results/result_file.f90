@@ -1,6 +1,6 @@
 !> The result file of a run: grid, histories, energies, events, and the model beside them.
 module result_file
-   use kinds, only: wp
+   use kinds, only: wp, int64
    use errors, only: error_type
    use part_file, only: part_file_type
    use state_archive, only: archive_type
@@ -304,8 +304,8 @@ contains
             texts(2) = list%names(list%rows(event%row)%pair)
             call self%events%append_row(self%file, [event%time, event%rate_before, &
                   event%rate_after, event%impulse, event%beta], &
-                  [scene%rows%node_id(event%row), int(event%n_solves), &
-                  int(event%n_factorizations)], texts, error)
+                  [int(scene%rows%node_id(event%row), int64), event%n_solves, &
+                  event%n_factorizations], texts, error)
          end associate
          if (allocated(error)) return
       end do

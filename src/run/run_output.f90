@@ -27,7 +27,6 @@ module run_output
       type(preview_type) :: preview
       type(publishing_type) :: publishing
       type(watch_type) :: watch
-      real(wp) :: end_time = 0.0_wp              !! total time at the end of the run
       logical :: state_due = .false.             !! *RESTART asks for the state of this increment
       integer(int64) :: iterations = 0           !! at the end of the last increment
    end type output_type

@@ -74,7 +74,6 @@ contains
          call enter(cost, phase_build, outer)
          call prepare(simulation, output%log, .false., output%preview, error)
          if (allocated(error)) return
-         output%end_time = simulation%motion%motion%t
          call rebuild(simulation, error)
          if (restart%wanted .and. .not. allocated(error)) call restore_state(simulation, course, &
                restart%archive, error)
