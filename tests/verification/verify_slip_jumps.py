@@ -48,7 +48,8 @@ def slides(checks, name, run, start, speed, pull=0.0):
     checks.close(run['history/node_1/U1'], speed * gone - braking * gone**2 / 2, braking * dt**2 / 4,
                  f'{name}: displacement')
     checks.close(friction_of(run)[moving], -MU * M * G + 0.0 * time[moving], 1e-10, f'{name}: friction force')
-    checks.close(run['energy/friction'][-1], work, 1e-10 + between / 10 + pull * braking * dt**2, f'{name}: friction work')
+    checks.close(run['energy/friction'][-1], work, 1e-10 + between / 10 + pull * braking * dt**2,
+                 f'{name}: friction work')
     checks.at_most(np.max(np.abs(run['energy/balance_error'])), BALANCE + between / 10, f'{name}: balance error')
 
 
