@@ -9,7 +9,7 @@ module slip_state
    implicit none
    private
 
-   public :: slip_senses, sliding_senses, mark_sticking, review_slip
+   public :: slip_senses, sliding_senses, mark_sticking, review_slip, review_sticking
 
    !> Slip below this part of the largest speed is round-off,
    real(wp), parameter :: rest_tolerance = 1.0e-12_wp
@@ -73,12 +73,11 @@ contains
       type(contact_motion_type), intent(inout) :: motion   !! its end
       logical, intent(out) :: anew
       type(error_type), allocatable, intent(out) :: error
-      type(compliance_type) :: compliance
-      real(wp), dimension(scene%rows%n) :: slip, slip_before, stopped
-      logical, dimension(scene%rows%n) :: rough, halted, turned, moved
+      real(wp), dimension(scene%rows%n) :: slip, slip_before
+      logical, dimension(scene%rows%n) :: rough, halted, turned
 
       anew = .false.
-      rough = motion%touching .and. scene%rows%friction > 0.0_wp .and. may_hit(scene%rows)
+      rough = rough_rows_of(scene, motion)
       if (.not. any(rough)) return
       slip = slip_rates(scene%rows, motion%motion)
       slip_before = slip_rates(scene%rows, from%motion)
@@ -89,15 +88,44 @@ contains
             .and. partners_may_jump(scene)
       motion%sticking = motion%sticking .or. halted
       anew = any(rough .and. motion%sticking .and. .not. from%sticking) .or. any(turned)
-      moved = rough .and. motion%sticking .and. abs(slip) > round_off(motion)
-      if (anew .or. .not. any(moved)) return
+      ! what has not changed has been looked at
+      if (anew .or. .not. any(abs(slip - slip_before) > rest_tolerance*abs(slip))) return
+      call review_sticking(scene, motion, anew, error)
+   end subroutine review_slip
+
+   !> The same of rows that stick, wherever their slip comes from.
+   subroutine review_sticking(scene, motion, anew, error)
+      type(scene_type), intent(inout) :: scene
+      type(contact_motion_type), intent(inout) :: motion
+      logical, intent(out) :: anew
+      type(error_type), allocatable, intent(out) :: error
+      type(compliance_type) :: compliance
+      real(wp), dimension(scene%rows%n) :: slip, stopped
+      logical, dimension(scene%rows%n) :: rough, moved
+
+      anew = .false.
+      rough = rough_rows_of(scene, motion)
+      if (.not. any(rough .and. motion%sticking)) return
+      slip = abs(slip_rates(scene%rows, motion%motion))
+      moved = rough .and. motion%sticking .and. slip > round_off(motion)
+      if (.not. any(moved)) return
       call mass_compliance(scene, rough, compliance, error)
       if (allocated(error)) return
       stopped = stopped_speeds(scene, motion, compliance)
-      anew = any(moved .and. abs(slip) > stopped/2.0_wp)
+      anew = any(moved .and. slip > stopped/2.0_wp)
       if (.not. anew) motion%sticking = motion%sticking .and. .not. (moved .and. &
-            abs(slip) > stop_tolerance*stopped)
-   end subroutine review_slip
+            slip > stop_tolerance*stopped)
+   end subroutine review_sticking
+
+   !> Rows in contact whose friction acts on the velocity.
+   pure function rough_rows_of(scene, motion) result(rough)
+      type(scene_type), intent(in) :: scene
+      type(contact_motion_type), intent(in) :: motion
+      logical :: rough(scene%rows%n)
+
+      rough = scene%rows%friction > 0.0_wp
+      if (any(rough)) rough = rough .and. motion%touching .and. may_hit(scene%rows)
+   end function rough_rows_of
 
    !> Rigid surfaces or supports have a motion of their own.
    pure logical function partners_may_jump(scene) result(may)

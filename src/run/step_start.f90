@@ -5,8 +5,7 @@ module step_start
    use external_load, only: load_at
    use energy_ledger, only: open_ledger, close_increment
    use contact_impulses, only: restart_acceleration
-   use contact_motion, only: contact_motion_type
-   use slip_state, only: review_slip
+   use slip_state, only: review_sticking
    use anchored_impacts, only: lift_anchor
    use scene_setup, only: simulation_type, begin_step, meet_conditions
    implicit none
@@ -78,17 +77,12 @@ contains
       logical, intent(in) :: held_before(:)      !! (n_freedoms) prescribed in it
       type(error_type), allocatable, intent(out) :: error
       real(wp), parameter :: round_off = 1.0e-12_wp
-      type(contact_motion_type) :: before
       logical :: anew
 
       anew = .not. (all(held_before .eqv. simulation%held) .and. maxval(abs(load_now(simulation) &
             - load_before)) <= round_off*maxval(abs(load_before)))
-      if (.not. anew) then
-         before = simulation%motion
-         call review_slip(simulation%scene, before, simulation%motion, anew, error)
-         if (allocated(error)) return
-      end if
-      if (.not. anew) return
+      if (.not. anew) call review_sticking(simulation%scene, simulation%motion, anew, error)
+      if (allocated(error) .or. .not. anew) return
       call restart_acceleration(simulation%scene, simulation%motion, error)
       simulation%motion%fresh = .true.
    end subroutine go_on
