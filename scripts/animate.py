@@ -12,7 +12,7 @@ import textwrap
 import numpy as np
 from carom_mesh import CORNERS, VERTEX, Mesh
 from carom_plots import (
-    BLACK, BLUE, ORANGE, RED, SKY, axis_label, colours_of, make_parser, output, plt,
+    BLACK, BLUE, ORANGE, RED, SKY, axis_label, colours_of, make_parser, output, plain, plt,
 )
 from carom_results import Result
 from carom_script import ScriptError, run
@@ -146,7 +146,7 @@ class Picture:
         width, height = high - low
         aspect = height / width
         wide = 7.6 if aspect < 1 else max(5.0, 7.6 / aspect + 0.6)
-        self.heading = textwrap.wrap(film.heading, int(9.5 * wide))[:2]
+        self.heading = [plain(line) for line in textwrap.wrap(film.heading, int(9.5 * wide))[:2]]
         above = 0.45 + 0.2 * len(self.heading)
         tall = min(max(wide * aspect, 1.6), 7.6) + 0.72 + above
         self.figure, self.axes = plt.subplots(figsize=(wide, tall), dpi=90)

@@ -134,8 +134,13 @@ def save(figure, path, close=True):
 def head(figure, result, more="", width=None):
     """The deck's heading above a figure, and below it what else there is to say."""
     width = width or int(9.5 * figure.get_size_inches()[0])
-    lines = textwrap.wrap(result.title, width)
-    figure.suptitle("\n".join([*lines[:3], *([more] if more else [])]))
+    lines = [plain(line) for line in textwrap.wrap(result.title, width)[:3]]
+    figure.suptitle("\n".join([*lines, *([more] if more else [])]))
+
+
+def plain(text):
+    """A text of the user's for a picture: its $ stand for themselves, not around mathematics."""
+    return text.replace("$", r"\$")
 
 
 def curve_style(number):
@@ -157,7 +162,7 @@ def quantity(name):
 def label(name):
     """A column in words: 'U1, node 2' for node_2/U1."""
     *owner, last = name.split("/")
-    return f"{last}, {owner[0].replace('_', ' ', 1)}" if owner else last
+    return plain(f"{last}, {owner[0].replace('_', ' ', 1)}" if owner else last)
 
 
 def axis_label(name):

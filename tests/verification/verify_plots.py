@@ -137,6 +137,24 @@ def options(sdof):
     CHECKS.true(len(set(COLOURS)) == len(COLOURS) == 7, 'seven colours')
 
 
+def words_of_the_user():
+    """Headings and names with $, ² and the like are drawn as they are, not as mathematics."""
+    deck = STRIP.replace('Two elements fly', r'$5 and $7, $\foo$').replace('FRONT', 'fr$o$nt²')
+    path = run_deck(deck).path
+    title = r'$5 and $7, $\foo$ against a wall'
+    with plt.rc_context({'svg.fonttype': 'none'}):
+        for script, words, wanted in (
+                ('plot_history', ['--columns', 'contact*/CF?'], [title, 'contact FR$O$NT²-WALL']),
+                ('plot_energy', [], [title]), ('plot_mesh', [], [title])):
+            picture = FOLDER / 'words.svg'
+            error = call(script, path, '--save', picture, *words)[1]
+            drawn = picture.read_text()
+            CHECKS.true(not error and all(f'>{text}<' in drawn for text in wanted),
+                        f'{script} draws {wanted}: {error}')
+    said, error = call('animate', path, '--every', 5, '-o', FOLDER / 'words.gif')
+    CHECKS.true('3 frames' in said, f'animate with such a heading: {error or said}')
+
+
 def call_title(path):
     """The title of the history's figure."""
     module = importlib.import_module('plot_history')
@@ -202,6 +220,7 @@ def main():
                      ).path
     draw_all(sdof, strip)
     options(sdof)
+    words_of_the_user()
     streams(sdof)
     CHECKS.finish()
 
