@@ -8,6 +8,7 @@ from carom_script import MissingError, need
 
 BLOCK = 1 << 16  # rows in memory at a time
 BINS = 2000  # columns of pixels that a picture has at most
+DIGITS = "0123456789"  # str.isdigit takes ² too
 
 
 class Rows:
@@ -209,8 +210,8 @@ def envelope(time, curves, bins=BINS):
 
 def natural_key(name):
     """A key that sorts node_2 before node_10."""
-    digits = "".join(c if c.isdigit() else " " for c in name).split()
-    letters = "".join("0" if c.isdigit() else c for c in name)
+    digits = "".join(c if c in DIGITS else " " for c in name).split()
+    letters = "".join("0" if c in DIGITS else c for c in name)
     return letters.split("0")[0], [int(d) for d in digits], name
 
 

@@ -15,7 +15,7 @@ from result_decks import BARE, STRIP
 
 from carom_results import Result            # noqa: E402  (from scripts, where carom_case looks)
 from carom_script import ScriptError        # noqa: E402
-from carom_tables import Computed, envelope, minmax   # noqa: E402
+from carom_tables import Computed, envelope, minmax, natural_key   # noqa: E402
 
 CHECKS = Checks()
 
@@ -52,6 +52,14 @@ def read_columns(run, result):
     CHECKS.true(result.heading == 'Two elements fly against a wall' == result.title, 'heading')
     CHECKS.true(result.deck.startswith('*HEADING\n') and '*END STEP' in result.deck, 'deck')
     CHECKS.true(result.energy['kinetic'].description == 'kinetic energy', 'description')
+
+
+def names():
+    """Names of any letters and figures are sorted; only 0 to 9 count as numbers."""
+    odd = ['node_10/U1', 'gap²/CF1', 'node_2/U1', 'gap①', 'gap٣', 'gap 2', 'node_2/U2']
+    found = sorted(odd, key=natural_key)
+    CHECKS.true(found.index('node_2/U1') < found.index('node_2/U2') < found.index('node_10/U1'),
+                f'in natural order: {found}')
 
 
 def read_slices(result):
@@ -269,6 +277,7 @@ def read_in_mid_run():
 
 
 def main():
+    names()
     run = run_deck(STRIP)
     with Result(run.path) as result:
         read_columns(run, result)
