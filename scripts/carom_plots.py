@@ -1,6 +1,7 @@
 """What the scripts that draw share: style, words, events, and pictures saved or shown."""
 
 import argparse
+import collections
 import os
 import sys
 import textwrap
@@ -39,7 +40,7 @@ COLOURS = [BLUE, ORANGE, GREEN, RED, PURPLE, SKY, BLACK]
 DASHES = ["-", (0, (6, 2)), (0, (6, 2, 1.5, 2)), (0, (1.5, 1.5))]
 EVENT_COLOURS = {"impact": RED, "capture": GREEN, "release": PURPLE}
 EVENT_LINES = {"impact": "dashed", "capture": "dotted", "release": "dashdot"}
-MOST_LINES = 60  # events beyond which they are ticks at the foot
+MOST_LINES = 60  # instants beyond which they are ticks at the foot
 BINS_OF_TICKS = 1500  # places along an axis that ticks can have
 FORMATS = (".png", ".pdf", ".svg")
 WINDOWS = ("QtAgg", "TkAgg", "GTK4Agg", "GTK3Agg", "WxAgg", "MacOSX")
@@ -188,7 +189,7 @@ def colours_of(values, where, inner=1.0):
 def mark_events(axes, events, first, last):
     """Draws the events between two times as thin lines; many of them as ticks at the foot."""
     for kind, (count, times) in event_times(events, first, last).items():
-        top = 1.0 if count <= MOST_LINES else 0.04
+        top = 1.0 if len(times) <= MOST_LINES else 0.04
         axes.vlines(
             times, 0, top, transform=axes.get_xaxis_transform(), zorder=1, linewidth=1.2,
             colors=EVENT_COLOURS.get(kind, "0.5"), label=f"{kind} ({count})",
@@ -197,20 +198,21 @@ def mark_events(axes, events, first, last):
 
 
 def event_times(events, first, last):
-    """The events between two times by kind: how many times, and where to draw them."""
-    found, span = {}, max(last - first, 1e-300)
+    """The events between two times by kind: how many, and the times at which to draw them."""
+    found, counts, span = {}, collections.Counter(), max(last - first, 1e-300)
     for begin in range(0, len(events), BLOCK):
         rows = slice(begin, begin + BLOCK)
         times, kinds = events["time"][rows], events["kind"][rows]
         inside = (times >= first) & (times <= last)
         for kind in np.unique(kinds[inside]).tolist():
-            found.setdefault(kind, []).append(np.unique(times[inside & (kinds == kind)]))
+            chosen = times[inside & (kinds == kind)]
+            counts[kind] += len(chosen)
+            found.setdefault(kind, []).append(np.unique(chosen))
     drawn = {}
     for kind, parts in sorted(found.items()):
         times = np.unique(np.concatenate(parts))
-        count = len(times)
-        if count > BINS_OF_TICKS:
+        if len(times) > BINS_OF_TICKS:
             places = np.unique(np.floor((times - first) / span * BINS_OF_TICKS))
             times = first + (places + 0.5) / BINS_OF_TICKS * span
-        drawn[kind] = count, times
+        drawn[kind] = counts[kind], times
     return drawn

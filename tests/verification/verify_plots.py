@@ -205,6 +205,11 @@ def streams(small):
     events = {'time': np.linspace(0, 1, 100_000), 'kind': np.full(100_000, 'impact')}
     count, times = event_times(Rows(events), 0.0, 1.0)['impact']
     CHECKS.true(count == 100_000 and len(times) <= BINS_OF_TICKS + 1, 'many events are few ticks')
+    events = {'time': np.array([0.1, 0.1, 0.2, 0.2, 0.2, 0.9]),
+              'kind': np.array(['impact'] * 5 + ['release'])}
+    found = event_times(Rows(events), 0.0, 0.5)
+    CHECKS.true(found.keys() == {'impact'} and found['impact'][0] == 5
+                and found['impact'][1].tolist() == [0.1, 0.2], 'events at one time are counted each')
 
 
 class Rows(dict):
