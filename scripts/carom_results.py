@@ -33,6 +33,9 @@ from carom_tables import Column, Events, Named, Table, natural_key, shortened
 EVENTS = ("time", "kind", "pair", "node", "gap_rate_before", "gap_rate_after", "impulse", "beta",
           "solves", "factorizations")
 OWNERS = {"node": "*NODE PRINT", "element": "*EL PRINT", "contact": "*CONTACT PRINT"}
+HEADING = re.compile(rb"\*[ \t]*HEADING[ \t]*(?=[,\r\n])", re.IGNORECASE)
+CARD = re.compile(rb"^[ \t]*\*(?!\*)", re.MULTILINE)
+HEAD = 1 << 16  # bytes of a deck that are looked at first for its heading
 WRITTEN_BY = {
     "history": "*NODE PRINT, *EL PRINT and *CONTACT PRINT write it",
     "energy": "*ENERGY PRINT writes it",
@@ -192,12 +195,15 @@ class Result:
         item = self.file.get("model/deck")
         if item is None:
             return ""
-        start = item.id.get_offset()
+        start, size = item.id.get_offset(), item.id.get_storage_size()
         if start is None or not hasattr(os, "pread"):
-            return heading_of(self.deck)
-        length = min(item.id.get_storage_size(), 1 << 16)  # the head of what may be long
-        head = os.pread(self.file.id.get_vfd_handle(), length, start)
-        return heading_of(head.decode("utf-8", "replace"))
+            return heading_of(self.array("model/deck"))[0]
+        for length in (min(size, HEAD), size):  # it mostly stands at the head of what may be long
+            deck = os.pread(self.file.id.get_vfd_handle(), length, start)
+            heading, whole = heading_of(deck)
+            if whole:
+                break
+        return heading
 
     @property
     def title(self):
@@ -230,16 +236,14 @@ def columns_of(group, prefix=""):
 
 
 def heading_of(deck):
-    """The lines below *HEADING in one."""
-    found, inside = [], False
-    for line in deck.splitlines():
-        text = line.strip()
-        if text.startswith("**"):
-            continue
-        if text.startswith("*"):
-            if inside:
-                break
-            inside = text[1:].split(",")[0].strip().upper() == "HEADING"
-        elif inside and text:
-            found.append(text)
-    return " ".join(found)
+    """The lines below *HEADING in one, of the bytes of a deck, and whether a card ends them."""
+    for found in HEADING.finditer(deck):
+        if not deck[deck.rfind(b"\n", 0, found.start()) + 1 : found.start()].strip():
+            break
+    else:
+        return "", False
+    _, _, below = deck[found.end() :].partition(b"\n")
+    end = CARD.search(below)
+    lines = below[: end.start() if end else None].decode("utf-8", "replace").split("\n")
+    texts = [line.strip() for line in lines]
+    return " ".join(t for t in texts if t and not t.startswith("**")), end is not None

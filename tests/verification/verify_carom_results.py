@@ -242,6 +242,19 @@ def convert_to_pyvista(frame):
         del sys.modules['pyvista']
 
 
+def read_headings():
+    """The heading wherever it stands: behind many lines, across the first block that is read, in any case,
+    and not what a comment or a longer word says."""
+    cards, filler = STRIP.split('*NODE,', 1), '** *HEADING of a comment\n' * 4000
+    for what, head, wanted in (
+            ('far down', filler + cards[0], 'Two elements fly against a wall'),
+            ('in any case', ' * heading \n** no\n  a, b*c\n\n ½ $\n', 'a, b*c ½ $'),
+            ('long', '*HEADING\n' + 'word\n' * 20000, ' '.join(['word'] * 20000)),
+            ('none', filler, '')):
+        with Result(run_deck(head + '*NODE,' + cards[1]).path) as result:
+            CHECKS.true(result.heading == wanted, f'heading {what}: "{result.heading[:40]}"')
+
+
 def read_modes():
     """Frequencies and modes."""
     run = run_deck(INPUT / 'cantilever' / 'modes.inp')
@@ -286,6 +299,7 @@ def main():
         read_frames(run, result)
         missing(result)
         convert(result)
+    read_headings()
     read_modes()
     read_in_mid_run()
     CHECKS.finish()
