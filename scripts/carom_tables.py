@@ -123,13 +123,30 @@ class Table:
 
 
 class Events(Table):
-    """The rows of /events: iterate over them, or take a column as with other tables."""
+    """The rows of /events: iterate over them, take one by its number, as events[-1], or a column as
+    with other tables."""
 
     def __iter__(self):
-        row = collections.namedtuple("Event", self._columns)
         for begin in range(0, len(self), BLOCK):
-            yield from map(row._make, zip(*(column[begin : begin + BLOCK].tolist()
-                                            for column in self._columns.values())))
+            yield from self._rows(slice(begin, begin + BLOCK))
+
+    def __getitem__(self, name):
+        if isinstance(name, slice):
+            chosen = range(len(self))[name]
+            first, last = (min(chosen), max(chosen)) if chosen else (0, -1)
+            rows = list(self._rows(slice(first, last + 1)))
+            return [rows[k - first] for k in chosen]
+        if not isinstance(name, (int, np.integer)):
+            return super().__getitem__(name)
+        if not -len(self) <= name < len(self):
+            raise IndexError(f"there are {len(self)} events, none with the number {name}")
+        begin = int(name) % len(self)
+        return next(self._rows(slice(begin, begin + 1)))
+
+    def _rows(self, rows):
+        """Some events in order."""
+        row = collections.namedtuple("Event", self._columns)
+        return map(row._make, zip(*(column[rows].tolist() for column in self._columns.values())))
 
     def filter(self, **wanted):
         """The events whose columns have these values: filter(kind="impact", node=5)."""

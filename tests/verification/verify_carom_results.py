@@ -97,6 +97,13 @@ def read_events(run, result):
     CHECKS.at_least(len(rows), 2, 'events')
     same([row.impulse for row in rows], run['events/impulse'], 'impulses row by row')
     CHECKS.true(rows[0].kind == 'impact' and rows[0].pair == 'FRONT-WALL', 'kind and pair are text')
+    CHECKS.true(events[0] == rows[0] and events[np.int64(-1)] == rows[-1] and events[1:3] == rows[1:3]
+                and events[::-1] == rows[::-1], 'events by their numbers')
+    try:
+        events[len(rows)]
+        CHECKS.true(False, 'an event beyond the last')
+    except IndexError as error:
+        CHECKS.true(f'{len(rows)} events' in str(error), f'an event beyond the last: {error}')
     hits = events.filter(kind='impact', node=1)
     theirs = run.events('impact')
     same(hits.time, theirs['time'][theirs['node'] == 1], 'events of a kind and a node')
@@ -151,7 +158,7 @@ def missing(result):
     says(('*EL PRINT writes it',), lambda: bare.element(1))
     says(('/energy', '*ENERGY PRINT'), lambda: bare.energy)
     CHECKS.true(len(bare.events) == 0 and list(bare.events) == [] and len(bare.events.time) == 0
-                and len(bare.events.filter(kind='impact')) == 0, 'no events are an empty table')
+                and len(bare.events.filter(kind='impact')) == 0 and bare.events[:] == [], 'no events are an empty table')
     CHECKS.true(bare.heading == '' and bare.title == 'result.h5', 'no heading: the name of the file')
     CHECKS.true(bare.nodes == [] and bare.contacts == [], 'nothing recorded: no names')
     empty = Result(without_tables(run_deck(BARE).path))

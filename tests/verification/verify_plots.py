@@ -131,10 +131,27 @@ def options(sdof):
     status, said = start('plot_history', 'none.h5')
     CHECKS.true(status == 1 and said == "error: no result file 'none.h5'\n", f'status {status}: {said}')
     bare = run_deck(BARE).path
-    for script, card in (('plot_energy', '*ENERGY PRINT'), ('plot_phase', '*NODE PRINT')):
+    for script, card in (('plot_energy', '*ENERGY PRINT'), ('plot_phase', '*NODE PRINT'),
+                         ('plot_history', '*NODE PRINT')):
         error = call(script, bare)[1]
-        CHECKS.true(card in error, f'{script}: {error}')
+        CHECKS.true(card in error and '--columns' not in error, f'{script}: {error}')
     CHECKS.true(len(set(COLOURS)) == len(COLOURS) == 7, 'seven colours')
+
+
+def freedoms(strip):
+    """plot_phase draws the freedom that the history has, or says which it has."""
+    up = BARE.replace('*SPRING, ELSET=S\n1\n', '*SPRING, ELSET=S\n2\n').replace('\n1, 1, 1\n', '\n1, 2, 1\n')
+    one = run_deck(up.replace('*END', '*NODE PRINT\nU, V\n*END')).path
+    for path, words, wanted in ((strip, [], 'U1, node 1'), (strip, ['--dof', 2], 'U2, node 1'),
+                                (strip, ['--node', 12], 'U1, node 12'), (one, [], 'U2, node 1'),
+                                (one, ['--node', 1], 'U2, node 1')):
+        with plt.rc_context({'svg.fonttype': 'none'}):
+            error = call('plot_phase', path, '--save', FOLDER / 'phase.svg', *words)[1]
+        CHECKS.true(not error and f'displacement {wanted}<' in (FOLDER / 'phase.svg').read_text(),
+                    f'plot_phase {words} draws {wanted}: {error}')
+    error = call('plot_phase', one, '--dof', 1)[1]
+    CHECKS.true('both U1 and V1' in error and 'there is --dof 2' in error, f'the wrong freedom: {error}')
+    CHECKS.true('no history of node 4' in call('plot_phase', strip, '--node', 4)[1], 'no such node')
 
 
 def words_of_the_user():
@@ -225,6 +242,7 @@ def main():
                      ).path
     draw_all(sdof, strip)
     options(sdof)
+    freedoms(strip)
     words_of_the_user()
     streams(sdof)
     CHECKS.finish()
