@@ -15,8 +15,8 @@
             print(frame.time, abs(frame.U).max())
         table = result.to_pandas("history")   needs pandas
 
-Names of sets and surfaces are in upper case in the file; `contact` takes them in any case. All
-quantities are in the units of the deck. What is not there ends with a ScriptError that names the
+Names of sets and surfaces have no blanks in the file, and A to Z in upper case; `contact` takes them as
+the deck has them. All quantities are in the units of the deck. What is not there ends with a ScriptError that names the
 card which writes it.
 """
 
@@ -27,7 +27,7 @@ import re
 import h5py
 import numpy as np
 from carom_frames import Frames, all_frames
-from carom_script import MissingError, ScriptError
+from carom_script import MissingError, ScriptError, folded
 from carom_tables import Column, Events, Named, Table, natural_key, shortened
 
 EVENTS = ("time", "kind", "pair", "node", "gap_rate_before", "gap_rate_after", "impulse", "beta",
@@ -149,7 +149,7 @@ class Result:
     def contact(self, name):
         """The history of a contact pair or set of gaps: result.contact("SLAVE-MASTER").CF1."""
         known = f"history/contact_{name}" in self.file
-        return self._owner("contact", name if known else name.upper())
+        return self._owner("contact", name if known else folded(name))
 
     def _owners(self, kind):
         """What has a history."""

@@ -1,7 +1,10 @@
 """What every script needs: the error the user can put right, and the way a script ends."""
 
 import importlib
+import string
 import sys
+
+FOLDING = str.maketrans(string.ascii_lowercase, string.ascii_uppercase, " \t\r\n")
 
 
 class ScriptError(Exception):
@@ -23,6 +26,11 @@ def run(main):
         sys.exit(f"error: {error}")
     except BrokenPipeError:
         sys.exit(1)
+
+
+def folded(name):
+    """A name as carom has it: without blanks, a to z in upper case, other letters as they are."""
+    return name.translate(FOLDING)
 
 
 def need(package, what):

@@ -4,11 +4,12 @@ import re
 
 import numpy as np
 
-from carom_results import ScriptError
+from carom_script import ScriptError, folded
 
 # gmsh's types of plane elements: corners, nodes that carom takes
 PLANE = {2: (3, 3), 3: (4, 4), 9: (3, 6), 16: (4, 8), 10: (4, 8)}
 FLAT = 1e-9     # of the size of the mesh
+LONGEST = 80    # bytes of a name
 
 
 class PlaneMesh:
@@ -151,8 +152,10 @@ class PlaneMesh:
 
 
 def clean_name(name):
-    """A name that a deck may have: no blanks, commas, quotes, '='; no number."""
-    name = re.sub(r"[\s,=\"'/*<>]+", "_", name.strip().upper()).strip("_")[:80]
+    """A name that a deck may have, as carom has it: none of the characters below, at most 80 bytes,
+    no number."""
+    name = folded(re.sub(r"[\s,=\"'/*<>]+", "_", name)).strip("_")
+    name = name.encode()[:LONGEST].decode(errors="ignore")
     return f"GROUP_{name}" if re.fullmatch(r"[-+\d]+", name) else name
 
 

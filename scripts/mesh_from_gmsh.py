@@ -25,7 +25,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from carom_results import ScriptError
+from carom_script import ScriptError
 from gmsh_bodies import BODIES
 from gmsh_mesh import PlaneMesh, cards, clean_name
 

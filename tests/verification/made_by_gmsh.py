@@ -6,6 +6,7 @@ import io
 import numpy as np
 from carom_case import INPUT, run_deck, scratch_folder      # finds the scripts too
 import mesh_from_gmsh
+from carom_results import Result
 from verify_meshes import REST, beside, falls, refused, ring
 
 GEO = INPUT / 'from_gmsh' / 'ring.geo'
@@ -150,6 +151,20 @@ def files(checks, gmsh, turned):
     made(checks, 'an unknown body', 'sphere', status=1, says='neither a body')
 
 
+def names(checks, turned):
+    """Groups of any letters: a deck finds them under their own names."""
+    geo = turned.with_name('names.geo')
+    text = turned.read_text()
+    geo.write_text(text.replace('"part"', '"größe, é"').replace('"bottom"', '"Straße ½"'))
+    path = made(checks, 'groups of any letters', geo, says='SURFACE STRAßE_½')
+    rest = REST.replace('*SURFACE, NAME=skin\n{curve}\n', '').replace('skin,', 'straße_½,')
+    deck = f'*INCLUDE, INPUT={path}\n' + rest.format(part='größe_é', elements='', floor=-0.002)
+    with Result(run_deck(deck).path) as result:
+        force = result.contact('stra ße_½-floor').CF2
+        checks.true(force.max() > 0 and result.contacts == ['STRAßE_½-FLOOR'],
+                    f'a deck names groups of any letters: force {force.max():.3g}')
+
+
 def check(checks, gmsh):
     """All of it; `gmsh` is the module."""
     turned = written(checks, gmsh)
@@ -162,3 +177,4 @@ def check(checks, gmsh):
     ring(checks, deck, 'the ring meshed anew', 45)
     bodies(checks)
     files(checks, gmsh, turned)
+    names(checks, turned)

@@ -262,6 +262,16 @@ def read_headings():
             CHECKS.true(result.heading == wanted, f'heading {what}: "{result.heading[:40]}"')
 
 
+def read_names():
+    """Contacts go by the names that the deck has: carom folds a to z and no other letter."""
+    deck = STRIP.replace('NAME=FRONT', 'NAME=flöor * Ss²').replace('\nFRONT,', '\nFLöor* ss²,')
+    with Result(run_deck(deck).path) as result:
+        CHECKS.true(result.contacts == ['FLöOR*SS²-WALL'], f'as carom folds it: {result.contacts}')
+        for name in ('FLöOR*SS²-WALL', 'flöor * Ss²-Wall', ' FLöor* ss² - wall'):
+            same(result.contact(name).CF1, result.history['contact_FLöOR*SS²-WALL/CF1'], f'contact("{name}")')
+        CHECKS.true('FLÖOR' in message(result.contact, 'FLÖOR*SS²-WALL'), 'another letter is another name')
+
+
 def read_modes():
     """Frequencies and modes."""
     run = run_deck(INPUT / 'cantilever' / 'modes.inp')
@@ -307,6 +317,7 @@ def main():
         missing(result)
         convert(result)
     read_headings()
+    read_names()
     read_modes()
     read_in_mid_run()
     CHECKS.finish()
