@@ -7,8 +7,8 @@ WHAT is a body (disc, ring, plate, bolt) or a file of gmsh (.geo, .msh) or of CA
     of curves     NSET and, where they bound the body, *SURFACE of that name
     of points     NSET of that name
 
-Without groups of curves the *SURFACE PART_OUTLINE has all sides of the body. Names lose their
-blanks, quotes and commas (they become _). Elements are turned counterclockwise, nodes without
+Without groups of curves the *SURFACE PART_OUTLINE has all sides of the body. In names a to z become
+A to Z, and blanks and any of , = " ' / * < > become _. Elements are turned counterclockwise, nodes without
 elements left out, 9-node elements written with 8. Needs the Python package gmsh (pip install gmsh)
 and the system's libraries of OpenGL and X11.
 

@@ -113,6 +113,10 @@ def bodies(checks):
             double = len(x) - len(np.unique(np.round(x, 9), axis=0))
             checks.true(sides > 0 and sides % 2 == 0 and double == sides - 1,
                         f'{name}: {sides} sides on both faces, {double} nodes doubled')
+    for words, size in (('0.05', '0.0125'), ('0.05 --order 2', '0.0125'), ('0.2 --size 0.3', '0.05')):
+        made(checks, f'a crack of {words}', 'plate', '--crack', *words.split(), status=1,
+             says=f'--size {size} or less')
+    made(checks, 'a short crack', 'plate', '--crack', 0.2, '--size', 0.05, says='SURFACE PLATE_CRACK: 8 sides')
     path = made(checks, 'bolt', 'bolt', '--type', 'CAX', '--order', 2, '--size', 0.5,
                 says='SURFACE BOLT_TIP')
     checks.true('TYPE=CAX6' in path.read_text(), 'bolt: axisymmetric elements')
@@ -163,6 +167,10 @@ def names(checks, turned):
         force = result.contact('stra ße_½-floor').CF2
         checks.true(force.max() > 0 and result.contacts == ['STRAßE_½-FLOOR'],
                     f'a deck names groups of any letters: force {force.max():.3g}')
+
+
+    geo.write_text(text.replace('"part"', '"a/b"').replace('"bottom"', '"A b"'))
+    made(checks, 'names that are one in a deck', geo, status=1, says="'A b' and 'a/b', are both 'A_B'")
 
 
 def check(checks, gmsh):
