@@ -155,6 +155,14 @@ def legend_beside(axes, least=2):
         axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
 
 
+def legend_below(figure, columns, **entries):
+    """A legend at the foot of a figure of constrained layout, which makes room for it."""
+    legend = figure.legend(loc="lower center", ncols=columns, **entries)
+    box = legend.get_window_extent()
+    height = (box.y0 + box.y1) / figure.bbox.height  # with the margin below it above it too
+    figure.get_layout_engine().set(rect=(0, height, 1, 1 - height))
+
+
 def quantity(name):
     """The kind of a column, without its component: 'U' for node_2/U1."""
     return name.split("/")[-1].rstrip("0123456789")

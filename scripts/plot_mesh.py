@@ -9,7 +9,8 @@ enlarged.
 import numpy as np
 from carom_mesh import VERTEX, Mesh
 from carom_plots import (
-    BLUE, GREEN, ORANGE, axis_label, colours_of, deliver, head, make_parser, plt,
+    BLUE, GREEN, ORANGE, axis_label, colours_of, deliver, head, legend_below, make_parser,
+    plt,
 )
 from carom_results import Result
 from carom_script import ScriptError, run
@@ -200,7 +201,7 @@ class Drawing:
         """Title and legend."""
         head(self.figure, result, title)
         if self.handles:
-            self.figure.legend(handles=self.handles, loc="outside lower center", ncols=3)
+            legend_below(self.figure, 3, handles=self.handles)
         return self.figure
 
 

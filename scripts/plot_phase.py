@@ -7,7 +7,7 @@ histories the picture shows how many rows lie in each pixel.
 
 import numpy as np
 from carom_plots import (
-    BLACK, BLUE, RED, deliver, head, label, make_parser, plt,
+    BLACK, BLUE, RED, deliver, head, label, legend_below, make_parser, plt,
 )
 from carom_results import Result
 from carom_script import ScriptError, run
@@ -138,7 +138,7 @@ def draw(result, node, dof, wall):
     axes.set_ylabel(f"velocity {label(f'node_{node}/V{dof}')}")
     axes.margins(0.06)
     if axes.get_legend_handles_labels()[1]:
-        figure.legend(loc="outside lower center", ncols=4)
+        legend_below(figure, 4)
     head(figure, result)
     return figure
 

@@ -154,6 +154,16 @@ def freedoms(strip):
     CHECKS.true('no history of node 4' in call('plot_phase', strip, '--node', 4)[1], 'no such node')
 
 
+def legends_below(sdof):
+    """A legend at the foot of a figure hides nothing of its axes."""
+    module = importlib.import_module('plot_phase')
+    with module.Result(sdof) as result:
+        figure = module.draw(result, 1, 1, -0.5)
+    figure.draw_without_rendering()
+    legend, axes = figure.legends[0].get_window_extent(), figure.axes[0].get_tightbbox()
+    CHECKS.true(0 < legend.y0 < legend.y1 < axes.y0, f'the legend is below the axes: {legend.y1:.0f}, {axes.y0:.0f}')
+
+
 def words_of_the_user():
     """Headings and names with $, ² and the like are drawn as they are, not as mathematics."""
     deck = STRIP.replace('Two elements fly', r'$5 and $7, $\foo$').replace('FRONT', 'fr$o$nt²')
@@ -176,7 +186,7 @@ def call_title(path):
     """The title of the history's figure."""
     module = importlib.import_module('plot_history')
     with module.Result(path) as result:
-        return module.draw(result, ['node_1/U1'], False).get_suptitle()
+        return module.draw(result, ['node_1/U1'], False)._suptitle.get_text()
 
 
 def large_file():
@@ -243,6 +253,7 @@ def main():
     draw_all(sdof, strip)
     options(sdof)
     freedoms(strip)
+    legends_below(sdof)
     words_of_the_user()
     streams(sdof)
     CHECKS.finish()
