@@ -36,6 +36,7 @@ OWNERS = {"node": "*NODE PRINT", "element": "*EL PRINT", "contact": "*CONTACT PR
 HEADING = re.compile(rb"\*[ \t]*HEADING[ \t]*(?=[,\r\n])", re.IGNORECASE)
 CARD = re.compile(rb"^[ \t]*\*(?!\*)", re.MULTILINE)
 HEAD = 1 << 16  # bytes of a deck that are looked at first for its heading
+TABLES = ("history", "energy", "events", "frequency", "cost")
 WRITTEN_BY = {
     "history": "*NODE PRINT, *EL PRINT and *CONTACT PRINT write it",
     "energy": "*ENERGY PRINT writes it",
@@ -211,8 +212,16 @@ class Result:
         return self.heading or os.path.basename(self.path)
 
     def to_pandas(self, group="history"):
-        """A table of the file, "history", "energy", "events", ..., as a pandas.DataFrame."""
-        return (self.events if group == "events" else self.table(group)).to_pandas()
+        """A table of the file, "history", "energy", "events", "frequency", as a pandas.DataFrame."""
+        if group in self.file and group.strip("/").split("/")[0] not in TABLES:
+            raise ScriptError(f"'{self.path}': /{group} is no table (tables are {', '.join(TABLES)}); "
+                              f'result.array("{group}/NAME") has one of its datasets')
+        if group == "events":
+            return self.events.to_pandas()
+        table = self.table(group)
+        if group == "frequency":  # the moving mass has no row a mode
+            table = Table({n: table[n] for n in table.names if n != "moving_mass"}, table._missing)
+        return table.to_pandas()
 
 
 def opened(path):

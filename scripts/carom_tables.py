@@ -117,8 +117,14 @@ class Table:
         return {"time": time, **dict(zip(names, curves))}
 
     def to_pandas(self):
-        """A pandas.DataFrame, its index `time` if there is such a column."""
-        frame = need("pandas", "to_pandas").DataFrame(self.arrays())
+        """A pandas.DataFrame, its index `time` if there is such a column; a column of vectors is three:
+        effective_mass_x, _y, _z."""
+        columns = {}
+        for name, values in self.arrays().items():
+            parts = {name: values} if values.ndim == 1 else \
+                {f"{name}_{axis}": part for axis, part in zip("xyz", values.T)}
+            columns.update(parts)
+        frame = need("pandas", "to_pandas").DataFrame(columns)
         return frame.set_index("time") if "time" in frame else frame
 
 

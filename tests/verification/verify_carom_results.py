@@ -190,6 +190,41 @@ def without(name, function):
     CHECKS.true(f'pip install {name}' in text, f'without {name}: "{text}"')
 
 
+class Columns(dict):
+    """What is needed here of pandas.DataFrame: columns, all of one length and one dimension."""
+
+    def __init__(self, columns):
+        super().__init__({name: np.asarray(values) for name, values in columns.items()})
+        shapes = {values.shape for values in self.values()}
+        CHECKS.true(len(shapes) == 1 and len(shapes.pop()) == 1, f'a table of {len(self)} columns')
+
+    def set_index(self, name):
+        """The table without the column."""
+        return Columns({key: values for key, values in self.items() if key != name})
+
+
+def with_pandas(function):
+    """Calls a function with the package or a stand-in for its table."""
+    if importlib.util.find_spec('pandas'):
+        return function()
+    sys.modules['pandas'] = types.ModuleType('pandas')
+    sys.modules['pandas'].DataFrame = Columns
+    found = function()
+    del sys.modules['pandas']
+    return found
+
+
+def tables(result):
+    """The tables of a file."""
+    same(np.asarray(result.to_pandas('history')['node_3/U1']), result.node(3).U1, 'pandas: history')
+    same(np.asarray(result.to_pandas('energy')['total']), result.energy.total, 'pandas: energies')
+    same(np.asarray(result.to_pandas('events')['impulse']), result.events.impulse, 'pandas: events')
+    same(np.asarray(result.to_pandas('cost')['solves']), [result.cost.solves], 'pandas: cost')
+    text = message(result.to_pandas, 'model')
+    CHECKS.true('/model is no table' in text and 'array("model/NAME")' in text, f'no table: {text}')
+    CHECKS.true('/heat' in message(result.to_pandas, 'heat'), 'a group that is not there')
+
+
 def convert(result):
     """To pandas, meshio and pyvista."""
     frame = result.frames[4]
@@ -200,15 +235,7 @@ def convert(result):
         table = result.to_pandas('history')
         same(table['node_3/U1'].to_numpy(), result.node(3).U1, 'pandas: a column')
         same(table.index.to_numpy(), result.time, 'pandas: the index is the time')
-        same(result.to_pandas('energy')['total'].to_numpy(), result.energy.total, 'pandas: energies')
-        events = result.to_pandas('events')
-        same(events[events.kind == 'impact'].node.to_numpy(),
-             result.events.filter(kind='impact').node, 'pandas: events')
-    else:
-        sys.modules['pandas'] = stand_in('pandas', DataFrame=None)
-        (columns,), _ = result.events.to_pandas()
-        same(columns['impulse'], result.events.impulse, 'columns for pandas')
-        del sys.modules['pandas']
+    with_pandas(lambda: tables(result))
     real = importlib.util.find_spec('meshio') is not None
     if not real:
         sys.modules['meshio'] = stand_in('meshio', Mesh=None)
@@ -279,6 +306,12 @@ def read_modes():
         same(result.frequencies, run['frequency/frequency'], 'frequencies')
         same(result.modes.effective_mass, run['frequency/effective_mass'], 'effective masses')
         same(result.frames.times, result.frequencies, 'a frame a mode')
+        table = with_pandas(lambda: result.to_pandas('frequency'))
+        same(np.asarray(table['frequency']), result.frequencies, 'pandas: a row a mode')
+        for k, axis in enumerate('xyz'):
+            same(np.asarray(table[f'effective_mass_{axis}']), result.modes.effective_mass[:, k],
+                 f'pandas: effective masses along {axis}')
+        CHECKS.true('moving_mass' not in set(table), 'pandas: no column without a row a mode')
         CHECKS.true(result.heading.startswith('Cantilever'), 'heading of an example')
 
 
