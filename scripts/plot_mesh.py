@@ -24,34 +24,14 @@ PLAIN = "#cfe3f2"
 SCHEMES = {1: (BLUE, "implicit"), 2: (ORANGE, "explicit"), 0: ("0.6", "neither")}
 
 
-def frequencies(mesh):
-    """The frequencies of the mode shapes that the frames are, by frame; empty if they are not."""
-    found = mesh.file.get("frequency/frequency")
-    if found is None:
-        return {}
-    first = mesh.n_frames - len(found)
-    return {first + i: value for i, value in enumerate(found[()])}
-
-
 def choose_frame(mesh, number):
     """The frame counted from 0."""
     n = mesh.n_frames
     if number is None:
-        return 0 if frequencies(mesh) else n - 1
+        return min(mesh.modes(), default=n - 1)
     if number == 0 or abs(number) > n:
         raise ScriptError(f"'{mesh.path}' has the frames 1 to {n} (-1 is the last), not {number}")
     return number - 1 if number > 0 else n + number
-
-
-def choose_scale(mesh, frame, is_mode):
-    """1, or for displacements that could not be seen a round number that shows them."""
-    size = max(np.ptp(mesh.points[:, :2], axis=0).max(), 1e-300)
-    most = np.linalg.norm(mesh.values("Point", "U", frame), axis=1).max()
-    if most <= 0 or not np.isfinite(most) or (most > 0.04 * size and not is_mode):
-        return 1.0
-    wanted = 0.1 * size / most
-    power = 10.0 ** np.floor(np.log10(wanted))
-    return float(power * max(factor for factor in (1, 2, 5) if factor * power <= wanted * 1.000001))
 
 
 class Drawing:
@@ -222,18 +202,18 @@ def main():
         raise ScriptError("--cells goes with --field")
     with Result(given.result) as result:
         mesh = Mesh(result)
-        modes = frequencies(mesh)
+        modes = mesh.modes()
         frame = choose_frame(mesh, given.frame)
         scale = given.scale
         if scale is None:
-            scale = choose_scale(mesh, frame, frame in modes)
+            scale = mesh.visible_scale(frame)
         drawing = Drawing(mesh, frame, scale, bool(given.field),
                           given.groups or given.supports)
         if scale != 0:
             drawing.undeformed()
         title = f"time {mesh.times[frame]:.4g}"
         if frame in modes:
-            title = f"mode {frame - min(modes) + 1}, frequency {modes[frame]:.5g}"
+            title = mesh.mode_title(frame)
         else:
             title += f", displacements × {scale:.4g}"
         if given.field:

@@ -164,6 +164,29 @@ def legends_below(sdof):
     CHECKS.true(0 < legend.y0 < legend.y1 < axes.y0, f'the legend is below the axes: {legend.y1:.0f}, {axes.y0:.0f}')
 
 
+def modes():
+    """animate lets one mode swing through a period: its displacements, its colours, its title."""
+    body = STRIP.split('*SURFACE')[0]
+    path = run_deck(body + '*BOUNDARY\n1, 1, 2\n11, 1, 2\n*STEP\n*FREQUENCY\n4\n*NODE FILE\nU\n'
+                    '*EL FILE\nS\n*END STEP\n').path
+    module = importlib.import_module('animate')
+    with module.Result(path) as result:
+        film, frame = module.Swing(result, 2, 3.0), result.frames[1]
+        quarter = film.n_frames // 4
+        for picture, part in ((0, 0), (quarter, 1), (2 * quarter, 0), (3 * quarter, -1)):
+            away = film.place(picture) - (frame.points + 3.0 * part * frame.U)[:, :2]
+            CHECKS.true(np.abs(away).max() < 1e-12, f'picture {picture} of mode 2 is {part} times its shape')
+            s11, whole = film.field('S11', picture)[0], film.field('S11', quarter)[0]
+            CHECKS.true(np.abs(s11 - part * whole).max() < 1e-12 * np.abs(whole).max()
+                        and film.field('MISES', picture)[0].min() >= 0, f'picture {picture}: its stresses')
+        CHECKS.true(film.title(0, set()) == f'mode 2, frequency {frame.time:.5g}', film.title(0, set()))
+    module.SWING = 8    # for the sake of time
+    for words, wanted in ((['--mode', 4, '--field', 'MISES'], '8 frames'),
+                          (['--mode', 5], 'the modes 1 to 4, not 5'), (['--every', 2], 'a mode has none')):
+        said, error = call('animate', path, '-o', FOLDER / 'mode.gif', *words)
+        CHECKS.true(wanted in said + error, f'animate {words} of modes: {error or said}')
+
+
 def words_of_the_user():
     """Headings and names with $, ² and the like are drawn as they are, not as mathematics."""
     deck = STRIP.replace('Two elements fly', r'$5 and $7, $\foo$').replace('FRONT', 'fr$o$nt²')
@@ -254,6 +277,8 @@ def main():
     options(sdof)
     freedoms(strip)
     legends_below(sdof)
+    modes()
+    CHECKS.true('no modes' in call('animate', sdof, '--mode', 1)[1], 'animate --mode without modes')
     words_of_the_user()
     streams(sdof)
     CHECKS.finish()
