@@ -96,10 +96,12 @@ class Table:
         return [*super().__dir__(), *self._columns]
 
     def select(self, patterns):
-        """The names that match the comma-separated ones (with * and ?), in the order given."""
+        """The names that are the comma-separated ones, or match them (with * and ?), in the order given."""
         chosen = []
         for pattern in filter(None, (item.strip().strip("/") for item in patterns.split(","))):
-            matching = [name for name in self.names if fnmatch.fnmatchcase(name, pattern)]
+            text = pattern.replace("[", "[[]")
+            matching = [pattern] if pattern in self else \
+                [name for name in self.names if fnmatch.fnmatchcase(name, text)]
             if not matching:
                 raise MissingError(self._missing(pattern, self.names))
             chosen += [name for name in matching if name not in chosen]

@@ -15,7 +15,7 @@ from result_decks import BARE, STRIP
 
 from carom_results import Result            # noqa: E402  (from scripts, where carom_case looks)
 from carom_script import ScriptError        # noqa: E402
-from carom_tables import Computed, envelope, minmax, natural_key   # noqa: E402
+from carom_tables import Computed, Table, envelope, minmax, natural_key   # noqa: E402
 
 CHECKS = Checks()
 
@@ -296,7 +296,20 @@ def read_names():
         CHECKS.true(result.contacts == ['FLöOR*SS²-WALL'], f'as carom folds it: {result.contacts}')
         for name in ('FLöOR*SS²-WALL', 'flöor * Ss²-Wall', ' FLöor* ss² - wall'):
             same(result.contact(name).CF1, result.history['contact_FLöOR*SS²-WALL/CF1'], f'contact("{name}")')
+        own = 'contact_FLöOR*SS²-WALL/CF'
+        CHECKS.true(result.history.select(own + '1') == [own + '1'] and result.history.select(own + '?')
+                    == [own + '1', own + '2', own + '3'], 'names with * of their own are found by pattern')
         CHECKS.true('FLÖOR' in message(result.contact, 'FLÖOR*SS²-WALL'), 'another letter is another name')
+
+
+def read_brackets():
+    """Columns whose names have brackets and stars: these are themselves, and * and ? patterns too."""
+    table = Table({name: [] for name in ('contact_A[1]/CF1', 'contact_A[2]/CF1', 'contact_A1/CF1', 'a*/U', 'ab/U')},
+                  lambda name, known: f'no {name}')
+    for pattern, wanted in (('contact_A[1]/CF1', ['contact_A[1]/CF1']), ('a*/U', ['a*/U']), ('a?/U', ['a*/U', 'ab/U']),
+                            ('contact_A[*', ['contact_A[1]/CF1', 'contact_A[2]/CF1'])):
+        CHECKS.true(table.select(pattern) == wanted, f'{pattern} selects {table.select(pattern)}')
+    CHECKS.true(message(table.select, 'contact_A[12]/CF1') == 'no contact_A[12]/CF1', '[12] is no pattern')
 
 
 def read_modes():
@@ -351,6 +364,7 @@ def main():
         convert(result)
     read_headings()
     read_names()
+    read_brackets()
     read_modes()
     read_in_mid_run()
     CHECKS.finish()
