@@ -16,7 +16,7 @@ from carom_plots import (
     BLACK, BLUE, ORANGE, RED, SKY, axis_label, colours_of, make_parser, output, plain, plt,
 )
 from carom_results import Result
-from carom_script import ScriptError, run
+from carom_script import ScriptError, finite, run
 from matplotlib import animation
 from matplotlib.collections import LineCollection, PolyCollection
 
@@ -323,11 +323,11 @@ def choose_film(result, given):
 def main():
     parser = make_parser(__doc__, "film: .gif or .mp4")
     parser.add_argument("--field", help="colours of the solids: MISES, S11, V, V1, U, ...")
-    parser.add_argument("--scale", type=float,
+    parser.add_argument("--scale", type=finite,
                         help="factor on the displacements (1; of a mode chosen to be seen)")
     parser.add_argument("--mode", type=int, help="the mode that swings, of a *FREQUENCY step (1)")
     parser.add_argument("--every", type=int, help=f"every n-th frame (so that <= {MOST_FRAMES})")
-    parser.add_argument("--fps", type=float, default=25.0, help="pictures a second (25)")
+    parser.add_argument("--fps", type=finite, default=25.0, help="pictures a second (25)")
     given = parser.parse_args()
     if given.fps <= 0 or (given.every is not None and given.every < 1):
         raise ScriptError("--fps and --every must be positive")

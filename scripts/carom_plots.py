@@ -8,7 +8,7 @@ import textwrap
 
 import matplotlib
 import numpy as np
-from carom_script import ScriptError
+from carom_script import ScriptError, finite
 from carom_tables import BLOCK
 
 if "MPLBACKEND" not in os.environ:
@@ -65,8 +65,8 @@ class Show(argparse.Action):
 def two_numbers(text):
     """An argument of two numbers with a comma."""
     try:
-        first, second = (float(word) for word in text.split(","))
-    except ValueError:
+        first, second = map(finite, text.split(","))
+    except (ValueError, argparse.ArgumentTypeError):
         raise argparse.ArgumentTypeError("two numbers with a comma") from None
     return first, second
 

@@ -1,6 +1,8 @@
 """What every script needs: the error the user can put right, and the way a script ends."""
 
+import argparse
 import importlib
+import math
 import string
 import sys
 
@@ -26,6 +28,17 @@ def run(main):
         sys.exit(f"error: {error}")
     except BrokenPipeError:
         sys.exit(1)
+
+
+def finite(text):
+    """An argument that is a number, and finite."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"'{text}' is no finite number")
+    return value
 
 
 def folded(name):

@@ -13,7 +13,7 @@ from carom_plots import (
     plt,
 )
 from carom_results import Result
-from carom_script import ScriptError, run
+from carom_script import ScriptError, finite, run
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
@@ -191,7 +191,7 @@ def main():
     parser.add_argument("--cells", action="store_true", help="the field's mean in each element")
     parser.add_argument("--frame", type=int,
                         help="1 is the first state or mode, -1 the last (default: last, mode 1)")
-    parser.add_argument("--scale", type=float, help="factor on the displacements"
+    parser.add_argument("--scale", type=finite, help="factor on the displacements"
                         " (default: chosen to be seen)")
     parser.add_argument("--groups", action="store_true", help="colours: implicit and explicit")
     parser.add_argument("--supports", action="store_true", help="draw boundary conditions")

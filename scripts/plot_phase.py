@@ -10,7 +10,7 @@ from carom_plots import (
     BLACK, BLUE, RED, deliver, head, label, legend_below, make_parser, plt,
 )
 from carom_results import Result
-from carom_script import ScriptError, run
+from carom_script import ScriptError, finite, run
 from carom_tables import Computed, minmax
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm
@@ -147,7 +147,7 @@ def main():
     parser = make_parser(__doc__)
     parser.add_argument("--node", type=int, help="its id (default: the first that hits something)")
     parser.add_argument("--dof", type=int, choices=DOFS, help="default: the first there is")
-    parser.add_argument("--wall", type=float, help="displacement at which the wall stands")
+    parser.add_argument("--wall", type=finite, help="displacement at which the wall stands")
     given = parser.parse_args()
     with Result(given.result) as result:
         node, dof = choose(result, given.node, given.dof)

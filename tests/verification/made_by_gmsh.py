@@ -85,7 +85,10 @@ def made(checks, what, *words, status=0, says=''):
     path = scratch_folder() / 'mesh.inc'
     text = io.StringIO()
     with contextlib.redirect_stdout(text), contextlib.redirect_stderr(text):
-        ended = mesh_from_gmsh.main([*map(str, words), '-o', str(path)])
+        try:
+            ended = mesh_from_gmsh.main([*map(str, words), '-o', str(path)])
+        except SystemExit as end:    # of the command line
+            ended = end.code
     good = ended == status and says in text.getvalue()
     checks.true(good, f'{what}: status {ended}, says {says!r}' + (not good) * text.getvalue())
     return path
@@ -117,6 +120,8 @@ def bodies(checks):
         made(checks, f'a crack of {words}', 'plate', '--crack', *words.split(), status=1,
              says=f'--size {size} or less')
     made(checks, 'a short crack', 'plate', '--crack', 0.2, '--size', 0.05, says='SURFACE PLATE_CRACK: 8 sides')
+    for words in (['--scale', 'nan'], ['--size', 'inf'], ['--at', '0', 'nan'], ['--crack', 'nan']):
+        made(checks, f'{words}', 'plate', *words, status=2, says='no finite number')
     path = made(checks, 'bolt', 'bolt', '--type', 'CAX', '--order', 2, '--size', 0.5,
                 says='SURFACE BOLT_TIP')
     checks.true('TYPE=CAX6' in path.read_text(), 'bolt: axisymmetric elements')

@@ -187,6 +187,19 @@ def modes():
         CHECKS.true(wanted in said + error, f'animate {words} of modes: {error or said}')
 
 
+def numbers(path):
+    """Arguments that are no finite numbers are refused, and nothing is drawn."""
+    picture = FOLDER / 'number.png'
+    for script, word in (('plot_mesh', '--scale=nan'), ('animate', '--scale=-inf'), ('animate', '--fps=nan'),
+                         ('plot_phase', '--wall=1e999'), ('plot_contact', '--range=0,nan'),
+                         ('plot_contact', '--hertz=1,inf'), ('plot_contact', '--centre=x')):
+        said = io.StringIO()
+        with contextlib.redirect_stderr(said):
+            _, status = call(script, path, word, '-o', picture)
+        CHECKS.true(status == '2' and word.split('=')[0] in said.getvalue() and not picture.exists(),
+                    f'{script} {word}: {said.getvalue().splitlines()[-1]}')
+
+
 def words_of_the_user():
     """Headings and names with $, ² and the like are drawn as they are, not as mathematics."""
     deck = STRIP.replace('Two elements fly', r'$5 and $7, $\foo$').replace('FRONT', 'fr$o$nt²')
@@ -277,6 +290,7 @@ def main():
     options(sdof)
     freedoms(strip)
     legends_below(sdof)
+    numbers(strip)
     modes()
     CHECKS.true('no modes' in call('animate', sdof, '--mode', 1)[1], 'animate --mode without modes')
     words_of_the_user()
