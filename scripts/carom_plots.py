@@ -6,13 +6,16 @@ import os
 import sys
 import textwrap
 
-import matplotlib
 import numpy as np
 from carom_script import ScriptError, finite
 from carom_tables import BLOCK
 
-if "MPLBACKEND" not in os.environ:
+if "matplotlib.pyplot" not in sys.modules:  # MPLBACKEND is for --show; a wrong one stops the import
+    wanted = os.environ.pop("MPLBACKEND", None)
+    import matplotlib
+
     matplotlib.use("Agg")
+    os.environ.update({"MPLBACKEND": wanted} if wanted is not None else {})
 import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
 
 plt.rcParams.update(

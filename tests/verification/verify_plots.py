@@ -130,6 +130,12 @@ def options(sdof):
     plt.switch_backend('Agg')
     status, said = start('plot_history', 'none.h5')
     CHECKS.true(status == 1 and said == "error: no result file 'none.h5'\n", f'status {status}: {said}')
+    os.environ['MPLBACKEND'] = 'foo'
+    status, said = start('plot_energy', sdof, '-o', FOLDER / 'foo.png')
+    CHECKS.true(status == 0 and 'foo.png' in said, f'MPLBACKEND=foo without --show: {said}')
+    status, said = start('plot_energy', sdof, '--show')
+    CHECKS.true(status == 1 and said.startswith('error: --show: no window with foo'), f'with it: {said}')
+    del os.environ['MPLBACKEND']
     bare = run_deck(BARE).path
     for script, card in (('plot_energy', '*ENERGY PRINT'), ('plot_phase', '*NODE PRINT'),
                          ('plot_history', '*NODE PRINT')):
