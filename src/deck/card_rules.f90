@@ -60,7 +60,7 @@ module card_rules
          'STATIC;step;DIRECT/SOLVER=;dt, T[, dt min, dt max]', &
          'DYNAMIC;step;DIRECT/EXPLICIT/GAMMA=/BETA=/ALPHA=/ORDER=/TOLERANCE=/SOLVER=;'// &
          'dt, T[, dt min, dt max]', &
-         'FREQUENCY;step;SOLVER=;number of modes', &
+         'FREQUENCY;step;SOLVER=;number of modes[, 0, highest frequency]', &
          'CLOAD;step;AMPLITUDE=/OP=;node or set, dof, force', &
          'DLOAD;step;AMPLITUDE=/OP=;element or set, P1 to P4, BX or BY, value; or GRAV, size, '// &
          'nx, ny, nz; or CENTRIF, omega squared, x, y, z, ax, ay, az', &
