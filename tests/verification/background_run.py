@@ -11,7 +11,7 @@ from pathlib import Path
 import h5py
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-PROGRAM = str(Path(sys.argv[1]).resolve())
+PROGRAM = str(Path(sys.argv[1]).resolve()) if len(sys.argv) > 1 else ''
 
 
 def default_signals():
