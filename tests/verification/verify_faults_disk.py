@@ -9,6 +9,7 @@ import time
 
 from carom_case import Checks, scratch_folder
 from fault_case import PUBLISHED, SDOF, Place, endless, limited, rows_of, said, saved
+from square_deck import rectangle
 
 FAILING = r"""
 #define _GNU_SOURCE
@@ -72,6 +73,29 @@ def check_full_disk(checks):
     run = place.run(prepare=limited(600000))
     said(checks, run, 3, ['limit of the size of a file'], 'compressed results, a limit')
     saved(checks, place, (1000, 1000, 1), 'compressed results, a limit', vtk=True)
+
+
+def check_full_disk_restarted(checks):
+    """A limit of the size of files, met by a run that goes on from a state: neither that state nor a
+    row of before is lost. A new state takes the place of that one, for which there is room."""
+    stopped = ['to go on: carom run deck.inp --restart deck.h5']
+    records = ['*NODE PRINT, NSET=left, FREQUENCY={}', 'U', '*ENERGY PRINT, FREQUENCY={}',
+               '*NODE FILE, FREQUENCY=1000000', 'U', '*RESTART, WRITE, FREQUENCY=100']
+    square = rectangle(40, 'CPE4', '*DYNAMIC, DIRECT, EXPLICIT', records).replace('0.01, 0.1', '0.01, 1000')
+    for every, status, words in ((1, 3, ['limit of the size of a file']), (10**6, 5, stopped)):
+        place = Place(square.replace('{}', str(every)))
+        what = f'a row in {every} increments'
+        said(checks, place.run('--time-limit', '0.3'), 5, stopped, f'a run that is stopped, {what}')
+        for more in (20000, 40000, 80000):
+            what = f'a row in {every} increments, room for {more} bytes beyond the margin'
+            rows = rows_of(place.folder / 'deck.h5')
+            size = (place.folder / 'deck.h5').stat().st_size
+            run = place.run('--restart', 'deck.h5', '--time-limit', '0.5' if status == 5 else '50',
+                            prepare=limited(size + 2**18 + more))
+            said(checks, run, status, words, f'restarted, {what}')
+            saved(checks, place, rows, f'restarted, {what}')
+            run = place.run('--restart', 'deck.h5', '--time-limit', '0.1')
+            said(checks, run, 5, stopped, f'restarted again without a limit, {what}')
 
 
 def mounted(folder, size):
@@ -182,6 +206,7 @@ def check_failing_disk(checks):
 def main():
     checks = Checks()
     check_full_disk(checks)
+    check_full_disk_restarted(checks)
     check_small_disk(checks)
     check_failing_disk(checks)
     checks.finish()
