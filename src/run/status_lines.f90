@@ -1,5 +1,6 @@
 !> The lines of a status file that an earlier run has written up to a place.
 module status_lines
+   use file_calls, only: is_regular, look_at
    implicit none
    private
 
@@ -22,6 +23,8 @@ contains
 
       n = 0
       lines = ''
+      ! a pipe would wait for ever
+      if (.not. is_regular(look_at(path))) return
       open (newunit=unit, file=path, status='old', action='read', iostat=status)
       if (status /= 0) return
       lines = repeat(' ', 65536)
