@@ -4,8 +4,10 @@ module status_lines
    implicit none
    private
 
-   public :: read_status_lines
+   public :: read_status_lines, line_length
 
+   !> Of an increment: a line that is shorter was cut off when the run was killed.
+   integer, parameter :: line_length = 82
    integer, parameter :: longest = 200
 
 contains
@@ -52,7 +54,7 @@ contains
       integer :: place(2), status
 
       wanted = line(1:1) == '#'
-      if (wanted) return
+      if (wanted .or. len_trim(line) /= line_length) return
       read (line, *, iostat=status) place
       if (status /= 0) return
       wanted = place(1) < step .or. (place(1) == step .and. place(2) < increment)
