@@ -243,6 +243,13 @@ def check_leftovers(checks):
     reference.run()
     checks.true(abs(len(place.read()) - len(reference.read())) < 100,
                 'leftovers of a crash: nothing of them is in the results')
+    for name in ('deck.h5.part', 'deck.h5.next'):
+        for make in (os.mkfifo, os.mkdir):
+            place = Place()
+            make(place.folder / name)
+            run = place.run()
+            refused(checks, run, [f"cannot write '{name}': it is a directory, pipe or device",
+                                  'remove it'], ['deck.inp', name], f'{make.__name__} {name}')
 
 
 def check_no_space(checks):
