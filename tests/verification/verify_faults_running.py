@@ -51,7 +51,7 @@ def check_removed(checks):
     rows = rows_of(folder.place.folder / 'deck.h5')
     checks.true(min(rows) > 0 and folder.place.names() == ['deck.h5'],
                 f'the directory removed: {rows} rows, {folder.place.names()}')
-    said(checks, new.finish(), 3, ["'deck.h5'", 'Is a directory'], 'a directory for the copy')
+    said(checks, new.finish(), 3, ["'deck.h5.next': it is a directory", 'remove it'], 'a directory for the copy')
     saved(checks, new.place, (10, 10, 1), 'a directory for the copy', beside=['deck.h5.next'])
     for run in (again, both):
         checks.true(run.wait_for('deck.h5'), 'results are published after five seconds')
