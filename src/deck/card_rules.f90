@@ -173,7 +173,7 @@ contains
                cure='move it between *STEP and *END STEP')
       else if (card%step == 0 .and. behind_step .and. (level == 'model' .or. level == 'both')) then
          call fail_at(error, source, card%place, name//' stands behind a step and would hold ' &
-               //'from the start', cure='move it before the first *STEP, or what it says into a step')
+               //'from the start', cure='move it before the first *STEP, or into a step')
       end if
    end subroutine check_level
 
