@@ -131,8 +131,8 @@ contains
    end function contact_shares
 
    !> Way along which contact forces work over a span: h (v0 + v1)/2, so that with the impulse
-   !> h ((1 - gamma) F0 + gamma F1) their work is what they change the kinetic energy by, exactly, at
-   !> all beta and gamma. Springs, freedoms without inertia and those with a given motion go by the
+   !> h ((1 - gamma) F0 + gamma F1) their work is the change of the kinetic energy, exactly, at all
+   !> beta and gamma. Springs, freedoms without inertia and those with a given motion go by the
    !> displacements.
    pure function contact_moves(system, from, to, springs) result(moves)
       type(system_type), intent(in) :: system
