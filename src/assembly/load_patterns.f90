@@ -4,6 +4,7 @@ module load_patterns
    use memory_shortage, only: check_allocation
    use histories, only: distributed_load_type, load_pressure, load_body
    use model, only: model_type
+   use element_groups, only: group_mass
    use structure, only: structure_type, inertia_force
    implicit none
    private
@@ -57,8 +58,8 @@ contains
       end do
    end subroutine scatter_one
 
-   !> M times the acceleration, on the elements of a set (0: all). Weight stays with the elements:
-   !> where contact nodes have lost their mass, they keep their load.
+   !> M times the acceleration, on the elements of a set (0: all), with the mass that moves: where
+   !> contact nodes have lost theirs, what falls freely would be strained by a weight of theirs.
    function gravity_pattern(structure, model, set, acceleration) result(pattern)
       type(structure_type), intent(in) :: structure
       type(model_type), intent(in) :: model
@@ -79,7 +80,7 @@ contains
             call check_allocation(status)
             do e = 1, size(group%member)
                if (.not. member(group%member(e))) cycle
-               call group%element%mass(e, group%lumped, m)
+               call group_mass(group, e, group%lumped, m)
                m(:, 1) = matmul(m, [(acceleration(modulo(i - 1, 3) + 1), i=1, size(m, 1))])
                do i = 1, size(m, 1)
                   if (group%lm(i, e) == 0) cycle
