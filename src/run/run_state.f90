@@ -130,6 +130,7 @@ contains
       call archive%leave()
       call archive%enter('conditions')
       call simulation%scene%system%motions%pass_state(archive)
+      call simulation%scene%system%loads%pass_state(archive)
       call archive%leave()
       call simulation%scene%pass_state(archive)
       call archive%enter('kept')
