@@ -1,7 +1,7 @@
 """The log and the status file of a run: what they hold stays, whatever ends the run.
 
 Runs that go on with the files of an earlier one are killed at the worst moment, before they have
-written a line of their own.
+written a line of their own. Files that are removed are missed at the next publication, or at the end.
 """
 import fcntl
 import os
@@ -9,8 +9,9 @@ import signal
 import time
 
 from carom_case import Checks
-from fault_case import Place, Started, endless
+from fault_case import PUBLISHED, SDOF, Place, Started, endless, rows_of, said
 
+MADE = 0.1             # seconds after which a run has recorded something
 RECORDED = 0.5         # seconds of a run that writes some hundred lines at least
 PIPE_SIZE = 1031       # fcntl's F_SETPIPE_SZ, which Python has from 3.10 on
 
@@ -81,12 +82,52 @@ def check_chain(checks):
     rows = [line.split() for line in place.read('deck.sta').decode().splitlines() if line[0] != '#']
     counts = [int(row[1]) for row in rows]
     strides = {after - before for before, after in zip(counts, counts[1:]) if before < 10000}
-    checks.true(place.read('deck.sta').startswith(settled(status)) and strides == {1} and {len(row) for row in rows} == {7},
-                f'a line cut off is written anew: {len(counts)} lines, strides {strides}')
+    checks.true(place.read('deck.sta').startswith(settled(status)) and strides == {1}
+                and {len(row) for row in rows} == {7}, f'a line cut off is written anew: {len(counts)} lines, strides {strides}')
+
+
+def removed(deck, name, seconds=0.0):
+    """A run, halted after so many seconds, whose file is gone: the log removed, the status file replaced."""
+    place = Place(deck)
+    run = place.start()
+    run.wait_for('deck.sta')
+    time.sleep(seconds)
+    run.halt()
+    (place.folder / name).unlink()
+    if name == 'deck.sta':
+        (place.folder / name).write_text('mine\n')
+    return run
+
+
+def missed(checks, run, name, rows, what):
+    """The run stops because of that, with so many rows at least."""
+    said(checks, run.finish(), 3, [f"cannot write '{name}'", 'removed or replaced', 'cure:'], what)
+    found = rows_of(run.place.folder / 'deck.h5')
+    checks.true(min(found[:2]) >= rows and 'deck.h5.part' not in run.place.names(),
+                f'{what}: the results are complete up to there: {found}, {run.place.names()}')
+
+
+def check_removed(checks):
+    """Log or status file removed or replaced in mid-run: told at the next publication, or at the end."""
+    names = ('deck.log', 'deck.sta')
+    runs = [removed(endless(20), name, MADE) for name in names]
+    for name in names:
+        run = removed(SDOF.replace('dt = 0.04', 'dt = 4e-4'), name)
+        run.go_on()
+        run.process.wait()
+        # a slow run misses it when it publishes
+        rows = 50001 if time.monotonic() - run.began < PUBLISHED else 1
+        missed(checks, run, name, rows, f'{name} removed, at the end')
+    for run in runs:
+        run.until(PUBLISHED)
+        run.go_on()
+    for run, name in zip(runs, names):
+        missed(checks, run, name, 10, f'{name} removed, at a publication')
 
 
 def main():
     checks = Checks()
+    check_removed(checks)
     check_killed_at_once(checks)
     check_chain(checks)
     checks.finish()
