@@ -154,15 +154,15 @@ def check_farm(checks, work):
 
 def check_interrupt(checks, work):
     """Ctrl-C keeps what is done and records nothing that was cut short."""
-    words = words_of(SDOF, work / 'stop', '--dt', '0.1:0.0001:12', '--define', 'end=20',
+    words = words_of(SDOF, work / 'stop', '--dt', '0.1:0.00001:12', '--define', 'end=20',
                      '--method', 'trans', '--jobs', '1')
     process = subprocess.Popen([sys.executable, str(SCRIPT), *words], stdout=subprocess.DEVNULL,
                                stderr=subprocess.PIPE, text=True)
-    deadline = time.time() + 60
+    deadline = time.time() + 300
     while not list((work / 'stop/points').glob('*.json')) and time.time() < deadline:
         time.sleep(0.02)
     os.kill(process.pid, signal.SIGINT)
-    said = process.communicate(timeout=60)[1]
+    said = process.communicate(timeout=300)[1]
     kept = list((work / 'stop/points').glob('*.json'))
     checks.true(process.returncode == 130 and 'the same command goes on' in said,
                 f'interrupted: status {process.returncode}')
