@@ -96,7 +96,6 @@ contains
             motion%touching)
       call accept_span(scene, motion, next)
       if (allocated(next%carried)) deallocate (next%carried)
-      if (.not. scene%system%newmark%beta > 0.0_wp) call book_rates(scene, motion, next)
       call let_go(scene, next, opening_rows(scene, motion, next))
       if (any(closed)) then
          call close_rows(scene, motion, next, closed, dt, error)
@@ -145,21 +144,6 @@ contains
       closed = lambda > 0.0_wp .and. .not. motion%touching
       call note_contact_force(scene, motion)
    end subroutine close_ahead
-
-   !> At beta = 0 multipliers work along the mean velocity of a step, not along its displacement as
-   !> has been booked: that differs by all the velocity that is stopped.
-   subroutine book_rates(scene, from, to)
-      type(scene_type), intent(inout) :: scene
-      type(contact_motion_type), intent(in) :: from, to
-      real(wp), dimension(scene%rows%n) :: lambda, moved, by_rates
-
-      lambda = from%lambda + to%lambda
-      if (.not. any(abs(lambda) > 0.0_wp)) return
-      moved = row_gaps(scene%rows, to%motion) - row_gaps(scene%rows, from%motion)
-      by_rates = (to%motion%t - from%motion%t)/2.0_wp &
-            *(row_rates(scene%rows, from%motion) + row_rates(scene%rows, to%motion))
-      call record_impact(scene%ledger, dot_product(lambda, moved - by_rates)/2.0_wp, 0.0_wp)
-   end subroutine book_rates
 
    !> Complementary forces of a compliance and the motion they give.
    subroutine solve_marked(scene, compliance, q, lambda, motion, solved)

@@ -2,8 +2,9 @@
 module step_start
    use kinds, only: wp
    use errors, only: error_type
-   use external_load, only: load_at
+   use external_load, only: load_at, set_reactions
    use energy_ledger, only: open_ledger, close_increment
+   use reactions, only: reactions_at
    use contact_impulses, only: restart_acceleration
    use slip_state, only: review_sticking
    use anchored_impacts, only: lift_anchor
@@ -36,6 +37,7 @@ contains
       if (simulation%scene%system%static) then
          simulation%motion%motion%v = 0.0_wp
          simulation%motion%motion%a = 0.0_wp
+         if (i_step > 1) call let_supports_go(simulation, held_before)
       end if
       call lift_anchor(simulation%scene, simulation%motion, error)
       if (allocated(error)) return
@@ -59,6 +61,19 @@ contains
                simulation%motion%motion)
       end associate
    end subroutine start_step
+
+   !> A support that a static step drops leaves its reaction as a load that goes down over the step:
+   !> without it all that the support has held would go in the first increment.
+   subroutine let_supports_go(simulation, held_before)
+      type(simulation_type), intent(inout) :: simulation
+      logical, intent(in) :: held_before(:)      !! (n_freedoms) prescribed in the step before
+
+      if (.not. any(held_before .and. .not. simulation%held)) return
+      associate (system => simulation%scene%system)
+         call set_reactions(system%loads, reactions_at(system, simulation%motion%motion, &
+               simulation%motion%force, held_before .and. .not. simulation%held))
+      end associate
+   end subroutine let_supports_go
 
    !> The applied forces at the time reached.
    function load_now(simulation) result(force)
