@@ -42,6 +42,7 @@ module lagrange_multiplier
    use rough_rows, only: solve_rows
    use contact_impulses, only: carry_acceleration, project_touching, follow_wall
    use impulse_account, only: book_impulse, book_friction, book_reactions, dependent_impulses
+   use slip_state, only: review_slip
    use row_following, only: rows_ahead, rows_here, settle_rows
    use first_contacts, only: find_first_contacts
    use constrained_step, only: advance_smoothly
@@ -273,22 +274,21 @@ contains
       end do
    end subroutine note_impacts
 
-   !> Rows that have stayed closed, on walls whose speed may have changed. One that has come to
-   !> stick has no slip acceleration any more.
+   !> Rows that have stayed closed, on walls whose speed may have changed.
    subroutine follow_rows(scene, from, to, dt, error)
       type(scene_type), intent(inout) :: scene
       type(contact_motion_type), intent(in) :: from
       type(contact_motion_type), intent(inout) :: to
       real(wp), intent(in) :: dt
       type(error_type), allocatable, intent(out) :: error
-      logical :: thrown(scene%rows%n), stuck(scene%rows%n)
+      logical :: thrown(scene%rows%n), anew
 
       to%fresh = .false.
       call follow_wall(scene, to, dt*(from%lambda + to%lambda)/2.0_wp, dt, thrown, error)
       if (allocated(error)) return
       call let_go(scene, to, thrown)
-      stuck = to%touching .and. to%sticking .and. .not. from%sticking
-      if (.not. any(thrown .or. stuck)) return
+      call review_slip(scene, from, to, anew, error)
+      if (allocated(error) .or. .not. (anew .or. any(thrown))) return
       call carry_acceleration(scene, to, error)
       to%fresh = .true.
    end subroutine follow_rows
