@@ -14,6 +14,7 @@ program carom
    use deck_check, only: check_deck
    use stop_signals, only: catch_signals
    use threads, only: set_threads
+   use limited_start, only: start_without_pool
    use parallel_ranks, only: start_ranks, end_ranks, my_rank
    use mumps_solver, only: serve_rank_zero, dismiss_ranks
    implicit none
@@ -31,6 +32,7 @@ program carom
    type(error_type), allocatable :: error
    integer :: status
 
+   call start_without_pool()
    call start_ranks()
    call read_command(command, error)
    if (command%json) call open_report(report, command)
@@ -47,6 +49,7 @@ program carom
          call set_threads(command%threads)
          call run_deck(command, report, error)
       case (command_check)
+         call set_threads(command%threads)
          call check_deck(command, report, error)
       case (command_reference)
          call print_help(command%topic, error)

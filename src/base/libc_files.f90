@@ -1,4 +1,5 @@
-!> Calls of the C library (glibc or musl on Linux) for files; file_calls gives them Fortran's texts.
+!> Calls of the C library (glibc or musl on Linux) for files, programs among them; file_calls gives
+!> them Fortran's texts.
 !>
 !> Functions with a variable number of arguments are not among them, nor structures whose layout
 !> depends on the machine: `statx` was made so that its own does not.
@@ -9,9 +10,9 @@ module libc_files
    private
 
    public :: statx_type, limit_type
-   public :: c_access, c_close, c_copy_range, c_creat, c_dup, c_errno, c_fallocate, c_fclose, &
-         c_ferror, c_fflush, c_fileno, c_flock, c_fopen, c_free, c_fsync, c_ftruncate, c_fwrite, &
-         c_getrlimit, c_mkdir
+   public :: c_access, c_close, c_copy_range, c_creat, c_dup, c_errno, c_execv, c_fallocate, &
+         c_fclose, c_ferror, c_fflush, c_fileno, c_flock, c_fopen, c_free, c_fsync, c_ftruncate, &
+         c_fwrite, c_getrlimit, c_mkdir
    public :: c_pread, c_realpath, c_rename, c_setenv, c_signal, c_statx, c_strerror, c_strlen, &
          c_unlink, c_write
 
@@ -232,6 +233,14 @@ module libc_files
          character(kind=c_char), intent(in) :: path(*)
          integer(c_int) :: status
       end function c_unlink
+
+      function c_execv(path, words) bind(c, name='execv') result(status)
+         import :: c_char, c_int, c_ptr
+         implicit none
+         character(kind=c_char), intent(in) :: path(*)
+         type(c_ptr), intent(in) :: words(*)   ! null behind the last
+         integer(c_int) :: status
+      end function c_execv
 
       function c_mkdir(path, mode) bind(c, name='mkdir') result(status)
          import :: c_char, c_int

@@ -8,7 +8,7 @@ module memory_limit
    implicit none
    private
 
-   public :: memory_limit_type, find_limit, group_limit
+   public :: memory_limit_type, find_limit, group_limit, has_address_limit
 
    !> Addresses that a thread takes without ever using the memory: work space of BLAS (OpenBLAS
    !> waits for ever where it does not get its 128 MiB), and of threads but the first a stack and a
@@ -16,6 +16,10 @@ module memory_limit
    real(wp), parameter :: work_space = 1.4e8_wp, stack_and_heap = 8.0e7_wp
    !> A control group with more than this has no limit, bytes.
    real(wp), parameter :: no_limit = 1.0e17_wp
+
+   !> Where the system tells what is limited, and the limits that addresses count against.
+   character(len=*), parameter :: all_limits = '/proc/self/limits'
+   character(len=*), parameter :: space = 'Max address space', data_size = 'Max data size'
 
    !> A limit of the resident memory.
    type :: memory_limit_type
@@ -48,9 +52,17 @@ contains
          if (bytes < self%bytes) self%cure = 'more memory for the control group (job, container)'
          call lower(self, bytes, 'what the control group of the process leaves')
       end if
-      call lower_by_addresses(self, now, ['Max address space', 'VmSize:          '], 'ulimit -v')
-      call lower_by_addresses(self, now, ['Max data size', 'VmData:      '], 'ulimit -d')
+      call lower_by_addresses(self, now, [character(len=20) :: space, 'VmSize:'], 'ulimit -v')
+      call lower_by_addresses(self, now, [character(len=20) :: data_size, 'VmData:'], 'ulimit -d')
    end subroutine find_limit
+
+   !> Whether the addresses of the process are limited.
+   function has_address_limit() result(has)
+      logical :: has
+
+      has = number_in_file(all_limits, space) >= 0.0_wp
+      if (.not. has) has = number_in_file(all_limits, data_size) >= 0.0_wp
+   end function has_address_limit
 
    !> What is left where addresses are limited. A user who sets a limit knows better than this, but
    !> not where the libraries find no room.
@@ -62,7 +74,7 @@ contains
       real(wp) :: bytes, idle
       integer :: n_threads
 
-      bytes = number_in_file('/proc/self/limits', trim(words(1)))
+      bytes = number_in_file(all_limits, trim(words(1)))
       if (bytes < 0.0_wp) return
       self%of_addresses = .true.
       n_threads = omp_get_max_threads()

@@ -17,7 +17,7 @@ module part_file
    private
 
    public :: part_file_type, check_output, claim, fill_part, publish, finish, discard
-   public :: reserve_room, forget_room, is_claimed, has_published, part_path, shown_path
+   public :: reserve_room, forget_room, is_claimed, has_published, part_path, shown_path, owner_in
 
    !> An output that this process alone may write to.
    type :: part_file_type
@@ -158,27 +158,38 @@ contains
       type(file_facts_type), intent(in) :: facts
       integer :: owner
       character(len=200) :: line
-      character(len=40) :: name
-      integer :: unit, status, place, first
+      integer :: unit, status
 
       owner = 0
-      write (name, '(a, z2.2, a, z2.2, a, i0, a)') ' ', facts%device(1), ':', facts%device(2), &
-            ':', facts%inode, ' '
-      name = adjustl(name)
       open (newunit=unit, file='/proc/locks', action='read', status='old', iostat=status)
       if (status /= 0) return
       do
          read (unit, '(a)', iostat=status) line
          if (status /= 0) exit
-         place = index(line, ' '//trim(lower_case(name))//' ')
-         if (place == 0 .or. index(line, 'FLOCK') == 0 .or. index(line, '->') > 0) cycle
-         first = index(line(:place - 1), ' ', back=.true.)
-         read (line(first:place), *, iostat=status) owner
-         if (status /= 0) owner = 0
-         exit
+         owner = owner_in(line, facts)
+         if (owner > 0) exit
       end do
       close (unit)
    end function lock_owner
+
+   !> The process that a line of /proc/locks says to hold the lock of a file, 0 if it is of another
+   !> one; the file is MAJOR:MINOR:INODE there, the first two with two hexadecimal digits or more.
+   pure function owner_in(line, facts) result(owner)
+      character(len=*), intent(in) :: line
+      type(file_facts_type), intent(in) :: facts
+      integer :: owner
+      character(len=40) :: name
+      integer :: status, place, first
+
+      owner = 0
+      write (name, '(z0.2, a, z0.2, a, i0)') facts%device(1), ':', facts%device(2), ':', &
+            facts%inode
+      place = index(line, ' '//trim(lower_case(name))//' ')
+      if (place == 0 .or. index(line, 'FLOCK') == 0 .or. index(line, '->') > 0) return
+      first = index(line(:place - 1), ' ', back=.true.)
+      read (line(first + 1:place), *, iostat=status) owner
+      if (status /= 0) owner = 0
+   end function owner_in
 
    !> Copies a file into the part file, which is empty so far.
    subroutine fill_part(self, path, error)

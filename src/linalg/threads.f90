@@ -8,7 +8,7 @@ module threads
    implicit none
    private
 
-   public :: set_threads, claim_work_space
+   public :: set_threads, claim_work_space, find_symbol
 
    abstract interface
       subroutine setter_interface(n) bind(c)
@@ -19,6 +19,7 @@ module threads
    end interface
 
    interface
+      !> The address of a procedure of the libraries, null if none has it.
       function find_symbol(handle, name) bind(c, name='dlsym') result(address)
          import :: c_ptr, c_funptr, c_char
          implicit none

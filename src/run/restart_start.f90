@@ -13,7 +13,7 @@ module restart_start
    use deck_reader, only: definition_type
    use deck_changes, only: deck_text_type, cut_deck, find_change, records_differ
    use hdf5_reader, only: hdf5_reader_type
-   use restart_group, only: read_state, new_restart_group, write_deck_names
+   use restart_group, only: read_state, new_restart_group, continue_group, write_deck_names
    use restart_deck, only: read_restart_deck, definition_length
    use result_file, only: open_results, record_increment, write_system
    use result_extents, only: extents_type, resume_results
@@ -225,6 +225,7 @@ contains
       if (self%resumed) then
          call output%results%pass_state(self%archive)
          call name_deck(self%definitions, simulation%model%source, output)
+         call continue_group(output%results%restart, self%archive)
          call write_deck_names(output%results%restart, output%results%file, error)
       end if
       if (self%resumed .and. .not. allocated(error)) return

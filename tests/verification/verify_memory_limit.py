@@ -13,18 +13,21 @@ from square_deck import rectangle
 ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS='1', OPENBLAS_NUM_THREADS='1')
 STATUS_MEMORY = 4
 MEGABYTE = 1000000
+# OpenBLAS with a thread of its own beside the one that calls it, as on a machine of two cores
+POOL = {name: value for name, value in os.environ.items() if not name.endswith('_NUM_THREADS')}
+POOL['OPENBLAS_NUM_THREADS'] = '2'
 # What OpenBLAS takes of the address space, and a little more
 WORK_SPACE = 140 * MEGABYTE
 
 
-def carom(*words, addresses=None):
-    """Status and error text of a command, with so many bytes of addresses."""
+def carom(*words, addresses=None, environment=None):
+    """Status, output and error text of a command, with so many bytes of addresses."""
     limit = None
     if addresses is not None:
         def limit():
             resource.setrlimit(resource.RLIMIT_AS, (int(addresses), int(addresses)))
     done = subprocess.run([sys.argv[1], *map(str, words)], capture_output=True, text=True,
-                          env=ENVIRONMENT, preexec_fn=limit, timeout=120)
+                          env=environment or ENVIRONMENT, preexec_fn=limit, timeout=60)
     return done.returncode, done.stdout, done.stderr
 
 
@@ -93,6 +96,30 @@ def find_floor():
     return floor + 10 * MEGABYTE
 
 
+def check_threads_of_libraries(checks, floor, folder):
+    """Where OpenBLAS makes threads as it is loaded every command ends under every limit of addresses,
+    and what is enough for one thread is enough; `check` says so too."""
+    deck = INPUT / 'sdof' / 'sdof.inp'
+    enough = floor + WORK_SPACE + 60 * MEGABYTE
+    ends = []
+    for limit in (*(floor + k * (enough - floor) / 4 for k in range(4)), *3 * [enough], 1.5 * enough):
+        for words in (['run', deck, '-o', folder / 'threads.h5', '--quiet', '--overwrite'], ['check', deck],
+                      ['--version']):
+            what = f'{limit / MEGABYTE:.0f} MB of addresses, OpenBLAS with threads: {words[0]}'
+            try:
+                status, said, text = carom(*words, addresses=limit, environment=POOL)
+            except subprocess.TimeoutExpired:
+                checks.true(False, f'{what} hangs')
+                return
+            good = status == 0 and not text and 'refused' not in said
+            refused = (status == STATUS_MEMORY and text.startswith('error: ') and '\n  cure: ' in text
+                       or words[0] == 'check' and status == 0 and 'would be refused here' in said)
+            ends.append(good or refused and limit < enough)
+            if not ends[-1]:
+                checks.true(False, f'{what}: status {status}: {(said + text)[-300:]!r}')
+    checks.true(all(ends), f'{len(ends)} commands end in order where OpenBLAS has threads')
+
+
 def check_early_stages(checks, deck):
     """Reading a deck and building its model are refused before they are begun."""
     status, _, text = carom('run', deck, '--memory', '6M')
@@ -146,6 +173,7 @@ def main():
             words[0].write_text(text)
         need = check_refusal(checks, name, words, folder)
         check_addresses(checks, name, words, need, floor, folder)
+    check_threads_of_libraries(checks, floor, folder)
     check_early_stages(checks, folder / 'explicit.inp')
     check_counts(checks, folder)
     checks.finish()
