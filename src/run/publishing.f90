@@ -12,10 +12,12 @@ module publishing
    implicit none
    private
 
-   public :: publishing_type, start_publishing, was_slow_to_start, is_due, publish_now
+   public :: publishing_type, start_publishing, was_slow_to_start, is_due, is_affordable, &
+         publish_now
 
    !> When the last publication was, and what it took.
    type :: publishing_type
+      real(wp) :: began = 0.0_wp                 !! when the run did
       real(wp) :: last = 0.0_wp
       real(wp) :: price = 0.0_wp                 !! seconds
    end type publishing_type
@@ -33,7 +35,8 @@ contains
    subroutine start_publishing(self)
       type(publishing_type), intent(out) :: self
 
-      self%last = seconds_now()
+      self%began = seconds_now()
+      self%last = self%began
    end subroutine start_publishing
 
    !> Whether so much time has passed before the first increment that its state is worth a copy.
@@ -56,6 +59,16 @@ contains
       if (present(interval)) wait = interval
       due = seconds_now() - self%last >= max(wait, share*self%price)
    end function is_due
+
+   !> Whether something that takes so many seconds in all takes no more of the run so far than
+   !> publications may.
+   function is_affordable(self, seconds) result(affordable)
+      type(publishing_type), intent(in) :: self
+      real(wp), intent(in) :: seconds
+      logical :: affordable
+
+      affordable = share*seconds <= seconds_now() - self%began
+   end function is_affordable
 
    !> Brings the log to its file and publishes all results. The log goes first: whatever ends the
    !> run, status lines up to the state that others see are there.

@@ -27,7 +27,7 @@ module simulation
    use course, only: course_type, begin_course
    use run_output, only: output_type
    use run_state, only: restore_state
-   use state_keeping, only: keep_before_step, keep_at_end, keep_if_interrupted
+   use state_keeping, only: keep_before_step, keep_at_end, keep_if_interrupted, keep_after_error
    use restart_start, only: restart_type, read_restart, is_finished, open_outputs, begin_again
    use increment_end, only: place_of
    use time_loop, only: run_step
@@ -105,6 +105,7 @@ contains
       type(error_type), allocatable :: close_error, ignored
 
       call keep_if_interrupted(simulation, course, output, error)
+      call keep_after_error(simulation, output, error)
       call tell_how_to_go_on(command, error)
       call remove_stop_files(output%watch)
       call end_progress(output%log%progress, .not. allocated(error), place_of(simulation, course))
