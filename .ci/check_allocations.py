@@ -16,7 +16,11 @@ def unchecked(path):
             yield text.count('\n', 0, found.start()) + 1
 
 
+paths = sorted(Path(sys.argv[1]).rglob('*.f90'))
+if not paths:
+    print(f'error: there are no Fortran sources in {sys.argv[1]}', file=sys.stderr)
+    sys.exit(2)
 bad = [f'{path}:{line}: allocate without stat= and call check_allocation after it'
-       for path in sorted(Path(sys.argv[1]).rglob('*.f90')) for line in unchecked(path)]
-print('\n'.join(bad))
+       for path in paths for line in unchecked(path)]
+print('\n'.join(bad), end='\n' if bad else '')
 sys.exit(1 if bad else 0)

@@ -3,7 +3,8 @@
 Draws the frames of /VTKHDF in the x-y plane, points + scale * U, solids filled: with --field in
 the colours of a field such as MISES, S22, V (its size) or V1. Rigid planes and circles appear if
 the file has them, gap elements as thin lines, supports as grey squares, and where an impact has
-just happened the node is red. Writes a GIF, or with -o NAME.mp4 an MP4 film (needs ffmpeg).
+just happened the node is red. Of a *FREQUENCY step one mode shape swings through a period, enlarged so
+as to be seen: --mode 2. Writes a GIF, or with -o NAME.mp4 an MP4 film (needs ffmpeg).
 """
 
 import os
@@ -12,15 +13,16 @@ import textwrap
 import numpy as np
 from carom_mesh import CORNERS, VERTEX, Mesh
 from carom_plots import (
-    BLACK, BLUE, ORANGE, RED, SKY, axis_label, colours_of, make_parser, output, plt,
+    BLACK, BLUE, ORANGE, RED, SKY, axis_label, colours_of, make_parser, output, plain, plt,
 )
 from carom_results import Result
-from carom_script import ScriptError, run
+from carom_script import ScriptError, finite, run
 from matplotlib import animation
 from matplotlib.collections import LineCollection, PolyCollection
 
 MOST_FRAMES = 400
 FLASH = 3  # pictures that an impact stays visible
+SWING = 40  # pictures of the period of a mode
 
 
 class Film:
@@ -79,6 +81,10 @@ class Film:
                 hit.add(int(gap[0]))
         return hit
 
+    def title(self, frame, hit):
+        """What is seen, in words."""
+        return f"time {self.times[frame]:.4g}" + (", impact" if hit else "")
+
     def still(self, frames):
         """Points that never move: supports."""
         looked_at = frames[:: max(1, len(frames) // 60)] + [frames[-1]]
@@ -103,6 +109,43 @@ class Film:
         low[thin] -= 0.08 * size
         high[thin] += 0.08 * size
         return low, high
+
+
+class Swing(Film):
+    """A mode shape through a period; its frames are the pictures of that."""
+
+    def __init__(self, result, number, scale):
+        super().__init__(result, scale)
+        modes = sorted(self.mesh.modes())
+        if not 1 <= number <= len(modes):
+            raise ScriptError(f"'{self.mesh.path}' has the modes 1 to {len(modes)}, not {number}"
+                              if modes else f"'{self.mesh.path}' has no modes (*FREQUENCY with "
+                              "*NODE FILE writes them)")
+        self.mode = modes[number - 1]
+        self.scale = self.mesh.visible_scale(self.mode) if scale is None else scale
+        self.n_frames = SWING
+
+    def part(self, frame):
+        """The part of the full swing, -1 to 1."""
+        return np.sin(2 * np.pi * frame / SWING)
+
+    def place(self, frame):
+        return self.mesh.place(self.mode, self.scale * self.part(frame))
+
+    def stress(self, frame):
+        whole = super().stress(self.mode)
+        return whole if whole is None else self.part(frame) * whole
+
+    def field(self, name, frame):
+        """A component follows the swing; a size, as MISES, is never negative."""
+        part = self.part(frame) if name[-1].isdigit() else abs(self.part(frame))
+        return [part * values for values in super().field(name, self.mode)]
+
+    def hits(self, frame, before):
+        return set()
+
+    def title(self, frame, hit):
+        return self.mesh.mode_title(self.mode)
 
 
 def draw_planes(axes, film, low, high):
@@ -146,7 +189,7 @@ class Picture:
         width, height = high - low
         aspect = height / width
         wide = 7.6 if aspect < 1 else max(5.0, 7.6 / aspect + 0.6)
-        self.heading = textwrap.wrap(film.heading, int(9.5 * wide))[:2]
+        self.heading = [plain(line) for line in textwrap.wrap(film.heading, int(9.5 * wide))[:2]]
         above = 0.45 + 0.2 * len(self.heading)
         tall = min(max(wide * aspect, 1.6), 7.6) + 0.72 + above
         self.figure, self.axes = plt.subplots(figsize=(wide, tall), dpi=90)
@@ -240,8 +283,7 @@ class Picture:
         for spine in self.axes.spines.values():
             spine.set_edgecolor(RED if hit else BLACK)
             spine.set_linewidth(3.0 if hit else 0.8)
-        now = f"time {self.film.times[frame]:.4g}" + (", impact" if hit else "")
-        self.title.set_text("\n".join([*self.heading, now]))
+        self.title.set_text("\n".join([*self.heading, self.film.title(frame, hit)]))
         self.title.set_color(RED if hit else BLACK)
 
 
@@ -269,17 +311,28 @@ def write(picture, steps, path, fps):
     print(f"{path}: {len(steps)} frames, {os.path.getsize(path) / 1e6:.1f} MB")
 
 
+def choose_film(result, given):
+    """The frames in time, or a mode where there are modes."""
+    if given.mode is None and "frequency" not in result.file:
+        return Film(result, 1.0 if given.scale is None else given.scale)
+    if given.every is not None:
+        raise ScriptError("--every takes frames in time, and a mode has none")
+    return Swing(result, 1 if given.mode is None else given.mode, given.scale)
+
+
 def main():
     parser = make_parser(__doc__, "film: .gif or .mp4")
     parser.add_argument("--field", help="colours of the solids: MISES, S11, V, V1, U, ...")
-    parser.add_argument("--scale", type=float, default=1.0, help="factor on the displacements (1)")
+    parser.add_argument("--scale", type=finite,
+                        help="factor on the displacements (1; of a mode chosen to be seen)")
+    parser.add_argument("--mode", type=int, help="the mode that swings, of a *FREQUENCY step (1)")
     parser.add_argument("--every", type=int, help=f"every n-th frame (so that <= {MOST_FRAMES})")
-    parser.add_argument("--fps", type=float, default=25.0, help="pictures a second (25)")
+    parser.add_argument("--fps", type=finite, default=25.0, help="pictures a second (25)")
     given = parser.parse_args()
     if given.fps <= 0 or (given.every is not None and given.every < 1):
         raise ScriptError("--fps and --every must be positive")
     with Result(given.result) as result:
-        film = Film(result, given.scale)
+        film = choose_film(result, given)
         every = given.every or -(-film.n_frames // MOST_FRAMES)
         frames = list(range(0, film.n_frames, every))
         picture = Picture(film, frames, given.field and given.field.upper())

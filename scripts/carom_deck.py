@@ -20,7 +20,7 @@ from pathlib import Path
 
 import h5py
 
-from carom_script import ScriptError
+from carom_script import ScriptError, folded
 
 # The result group /cost of a run; what is missing there is read from the log
 COSTS = [
@@ -35,11 +35,6 @@ PROCEDURES = ("STATIC", "DYNAMIC", "FREQUENCY")
 REQUESTS = (
     "NODEPRINT", "NODEFILE", "ELPRINT", "ELFILE", "CONTACTPRINT", "CONTACTFILE", "ENERGYPRINT",
 )
-
-
-def squeezed(text):
-    """A word as the program compares it: without blanks, in upper case."""
-    return "".join(text.split()).upper()
 
 
 def number_text(value):
@@ -68,28 +63,28 @@ class Card:
         words = [word.strip() for line in self.head for word in line.split(",")]
         words = [word for word in words if word]
         self.written = words[0][1:].strip() if words else ""
-        self.keyword = squeezed(self.written)
-        self.parameters = {}        # squeezed name: (name as written, value or None)
+        self.keyword = folded(self.written)
+        self.parameters = {}        # folded name: (name as written, value or None)
         for word in words[1:]:
             name, equals, value = word.partition("=")
-            self.parameters[squeezed(name)] = (name.strip(), value.strip() if equals else None)
+            self.parameters[folded(name)] = (name.strip(), value.strip() if equals else None)
 
     def has(self, name):
         """Whether the card has a parameter."""
-        return squeezed(name) in self.parameters
+        return folded(name) in self.parameters
 
     def get(self, name, default=None):
         """The value of a parameter as written; '' for one without a value."""
-        written = self.parameters.get(squeezed(name))
+        written = self.parameters.get(folded(name))
         return default if written is None else (written[1] or "")
 
     def set(self, name, value=True):
         """Gives a parameter a value; True: the parameter without a value, None or False: removes it."""
         if value is None or value is False:
-            if self.parameters.pop(squeezed(name), None) is None:
+            if self.parameters.pop(folded(name), None) is None:
                 return
         else:
-            self.parameters[squeezed(name)] = (name, None if value is True else number_text(value))
+            self.parameters[folded(name)] = (name, None if value is True else number_text(value))
         self.head, self.changed = [self._headline()], True
 
     def _headline(self):
@@ -177,11 +172,11 @@ class Deck:
 
     def cards(self, keyword):
         """The cards of a keyword."""
-        return [card for card in self if card.keyword == squeezed(keyword)]
+        return [card for card in self if card.keyword == folded(keyword)]
 
     def has(self, keyword):
         """Whether the deck has such a card."""
-        return any(card.keyword == squeezed(keyword) for card in self)
+        return any(card.keyword == folded(keyword) for card in self)
 
     def get(self, keyword, name, default=None):
         """The value of a parameter in the first card of the keyword."""
@@ -199,12 +194,12 @@ class Deck:
     def definitions(self):
         """The `*PARAMETER` lines: name (upper case) to value as written."""
         pairs = [line.partition("=") for card in self.cards("PARAMETER") for line in card.data]
-        return {squeezed(name): value.strip() for name, _, value in pairs}
+        return {folded(name): value.strip() for name, _, value in pairs}
 
     def value(self, text, defined=None):
         """The number that a field stands for, `<name>` replaced; None if it is none."""
-        known = {**self.definitions(), **{squeezed(k): str(v) for k, v in (defined or {}).items()}}
-        text = re.sub(r"<([^<>]*)>", lambda hit: known.get(squeezed(hit[1]), "?"), text)
+        known = {**self.definitions(), **{folded(k): str(v) for k, v in (defined or {}).items()}}
+        text = re.sub(r"<([^<>]*)>", lambda hit: known.get(folded(hit[1]), "?"), text)
         return parse_number("".join(text.split()))
 
     def procedures(self, *kinds):
@@ -234,7 +229,7 @@ class Deck:
 
     def remove(self, *keywords):
         """Takes all cards of the keywords away."""
-        unwanted = {squeezed(keyword) for keyword in keywords}
+        unwanted = {folded(keyword) for keyword in keywords}
         for item in self.items:
             if isinstance(item, Include):
                 item.deck.remove(*keywords)
@@ -248,7 +243,7 @@ class Deck:
         for item in self.items:
             if isinstance(item, Include):
                 item.deck.add_before(keyword, *lines)
-            elif item.keyword == squeezed(keyword):
+            elif item.keyword == folded(keyword):
                 items.append(Card(lines[:1], lines[1:]))
                 self.cut = True
             items.append(item)
@@ -257,7 +252,7 @@ class Deck:
     def add_before_first(self, keyword, *lines):
         """Puts a card before the first card of a keyword in the file itself, not in included ones."""
         for place, item in enumerate(self.items):
-            if isinstance(item, Card) and item.keyword == squeezed(keyword):
+            if isinstance(item, Card) and item.keyword == folded(keyword):
                 self.items.insert(place, Card(lines[:1], lines[1:]))
                 self.cut = True
                 return

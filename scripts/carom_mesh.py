@@ -73,6 +73,29 @@ class Mesh:
                 names += [name + end for end in ends if name + end not in names]
         return names
 
+    def modes(self):
+        """The frequencies of the frames that are mode shapes, by frame: the last ones."""
+        found = self.file.get("frequency/frequency")
+        values = [] if found is None else found[()]
+        return {self.n_frames - len(values) + i: float(value) for i, value in enumerate(values)}
+
+    def mode_title(self, frame):
+        """A mode shape in words."""
+        modes = self.modes()
+        return f"mode {frame - min(modes) + 1}, frequency {modes[frame]:.5g}"
+
+    def visible_scale(self, frame):
+        """A factor on the displacements: 1, or of mode shapes and displacements that could not be
+        seen a round number that shows them."""
+        size = max(np.ptp(self.points[:, :2], axis=0).max(), 1e-300)
+        most = np.linalg.norm(self.values("Point", "U", frame), axis=1).max()
+        small = most <= 0.04 * size or frame in self.modes()
+        if most <= 0 or not np.isfinite(most) or not small:
+            return 1.0
+        wanted = 0.1 * size / most
+        power = 10.0 ** np.floor(np.log10(wanted))
+        return float(power * max(f for f in (1, 2, 5) if f * power <= wanted * 1.000001))
+
     def outlines(self, kind, place, parts):
         """The cells of a solid type as polygons (cells, vertices, 2), edges in so many parts."""
         _, points = self.block(kind)

@@ -1,17 +1,21 @@
 """What the scripts that draw share: style, words, events, and pictures saved or shown."""
 
 import argparse
+import collections
 import os
 import sys
 import textwrap
 
-import matplotlib
 import numpy as np
-from carom_script import ScriptError
+from carom_script import ScriptError, finite
 from carom_tables import BLOCK
 
-if "MPLBACKEND" not in os.environ:
+if "matplotlib.pyplot" not in sys.modules:  # MPLBACKEND is for --show; a wrong one stops the import
+    wanted = os.environ.pop("MPLBACKEND", None)
+    import matplotlib
+
     matplotlib.use("Agg")
+    os.environ.update({"MPLBACKEND": wanted} if wanted is not None else {})
 import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
 
 plt.rcParams.update(
@@ -39,7 +43,7 @@ COLOURS = [BLUE, ORANGE, GREEN, RED, PURPLE, SKY, BLACK]
 DASHES = ["-", (0, (6, 2)), (0, (6, 2, 1.5, 2)), (0, (1.5, 1.5))]
 EVENT_COLOURS = {"impact": RED, "capture": GREEN, "release": PURPLE}
 EVENT_LINES = {"impact": "dashed", "capture": "dotted", "release": "dashdot"}
-MOST_LINES = 60  # events beyond which they are ticks at the foot
+MOST_LINES = 60  # instants beyond which they are ticks at the foot
 BINS_OF_TICKS = 1500  # places along an axis that ticks can have
 FORMATS = (".png", ".pdf", ".svg")
 WINDOWS = ("QtAgg", "TkAgg", "GTK4Agg", "GTK3Agg", "WxAgg", "MacOSX")
@@ -64,8 +68,8 @@ class Show(argparse.Action):
 def two_numbers(text):
     """An argument of two numbers with a comma."""
     try:
-        first, second = (float(word) for word in text.split(","))
-    except ValueError:
+        first, second = map(finite, text.split(","))
+    except (ValueError, argparse.ArgumentTypeError):
         raise argparse.ArgumentTypeError("two numbers with a comma") from None
     return first, second
 
@@ -134,8 +138,13 @@ def save(figure, path, close=True):
 def head(figure, result, more="", width=None):
     """The deck's heading above a figure, and below it what else there is to say."""
     width = width or int(9.5 * figure.get_size_inches()[0])
-    lines = textwrap.wrap(result.title, width)
-    figure.suptitle("\n".join([*lines[:3], *([more] if more else [])]))
+    lines = [plain(line) for line in textwrap.wrap(result.title, width)[:3]]
+    figure.suptitle("\n".join([*lines, *([more] if more else [])]))
+
+
+def plain(text):
+    """A text of the user's for a picture: its $ stand for themselves, not around mathematics."""
+    return text.replace("$", r"\$")
 
 
 def curve_style(number):
@@ -149,6 +158,14 @@ def legend_beside(axes, least=2):
         axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
 
 
+def legend_below(figure, columns, **entries):
+    """A legend at the foot of a figure of constrained layout, which makes room for it."""
+    legend = figure.legend(loc="lower center", ncols=columns, **entries)
+    box = legend.get_window_extent()
+    height = (box.y0 + box.y1) / figure.bbox.height  # with the margin below it above it too
+    figure.get_layout_engine().set(rect=(0, height, 1, 1 - height))
+
+
 def quantity(name):
     """The kind of a column, without its component: 'U' for node_2/U1."""
     return name.split("/")[-1].rstrip("0123456789")
@@ -157,7 +174,7 @@ def quantity(name):
 def label(name):
     """A column in words: 'U1, node 2' for node_2/U1."""
     *owner, last = name.split("/")
-    return f"{last}, {owner[0].replace('_', ' ', 1)}" if owner else last
+    return plain(f"{last}, {owner[0].replace('_', ' ', 1)}" if owner else last)
 
 
 def axis_label(name):
@@ -183,7 +200,7 @@ def colours_of(values, where, inner=1.0):
 def mark_events(axes, events, first, last):
     """Draws the events between two times as thin lines; many of them as ticks at the foot."""
     for kind, (count, times) in event_times(events, first, last).items():
-        top = 1.0 if count <= MOST_LINES else 0.04
+        top = 1.0 if len(times) <= MOST_LINES else 0.04
         axes.vlines(
             times, 0, top, transform=axes.get_xaxis_transform(), zorder=1, linewidth=1.2,
             colors=EVENT_COLOURS.get(kind, "0.5"), label=f"{kind} ({count})",
@@ -192,20 +209,21 @@ def mark_events(axes, events, first, last):
 
 
 def event_times(events, first, last):
-    """The events between two times by kind: how many times, and where to draw them."""
-    found, span = {}, max(last - first, 1e-300)
+    """The events between two times by kind: how many, and the times at which to draw them."""
+    found, counts, span = {}, collections.Counter(), max(last - first, 1e-300)
     for begin in range(0, len(events), BLOCK):
         rows = slice(begin, begin + BLOCK)
         times, kinds = events["time"][rows], events["kind"][rows]
         inside = (times >= first) & (times <= last)
         for kind in np.unique(kinds[inside]).tolist():
-            found.setdefault(kind, []).append(np.unique(times[inside & (kinds == kind)]))
+            chosen = times[inside & (kinds == kind)]
+            counts[kind] += len(chosen)
+            found.setdefault(kind, []).append(np.unique(chosen))
     drawn = {}
     for kind, parts in sorted(found.items()):
         times = np.unique(np.concatenate(parts))
-        count = len(times)
-        if count > BINS_OF_TICKS:
+        if len(times) > BINS_OF_TICKS:
             places = np.unique(np.floor((times - first) / span * BINS_OF_TICKS))
             times = first + (places + 0.5) / BINS_OF_TICKS * span
-        drawn[kind] = count, times
+        drawn[kind] = counts[kind], times
     return drawn

@@ -15,8 +15,8 @@
             print(frame.time, abs(frame.U).max())
         table = result.to_pandas("history")   needs pandas
 
-Names of sets and surfaces are in upper case in the file; `contact` takes them in any case. All
-quantities are in the units of the deck. What is not there ends with a ScriptError that names the
+Names of sets and surfaces have no blanks in the file, and A to Z in upper case; `contact` takes them as
+the deck has them. All quantities are in the units of the deck. What is not there ends with a ScriptError that names the
 card which writes it.
 """
 
@@ -27,12 +27,16 @@ import re
 import h5py
 import numpy as np
 from carom_frames import Frames, all_frames
-from carom_script import MissingError, ScriptError
+from carom_script import MissingError, ScriptError, folded
 from carom_tables import Column, Events, Named, Table, natural_key, shortened
 
 EVENTS = ("time", "kind", "pair", "node", "gap_rate_before", "gap_rate_after", "impulse", "beta",
           "solves", "factorizations")
 OWNERS = {"node": "*NODE PRINT", "element": "*EL PRINT", "contact": "*CONTACT PRINT"}
+HEADING = re.compile(rb"\*[ \t]*HEADING[ \t]*(?=[,\r\n])", re.IGNORECASE)
+CARD = re.compile(rb"^[ \t]*\*(?!\*)", re.MULTILINE)
+HEAD = 1 << 16  # bytes of a deck that are looked at first for its heading
+TABLES = ("history", "energy", "events", "frequency", "cost")
 WRITTEN_BY = {
     "history": "*NODE PRINT, *EL PRINT and *CONTACT PRINT write it",
     "energy": "*ENERGY PRINT writes it",
@@ -146,7 +150,7 @@ class Result:
     def contact(self, name):
         """The history of a contact pair or set of gaps: result.contact("SLAVE-MASTER").CF1."""
         known = f"history/contact_{name}" in self.file
-        return self._owner("contact", name if known else name.upper())
+        return self._owner("contact", name if known else folded(name))
 
     def _owners(self, kind):
         """What has a history."""
@@ -192,12 +196,15 @@ class Result:
         item = self.file.get("model/deck")
         if item is None:
             return ""
-        start = item.id.get_offset()
+        start, size = item.id.get_offset(), item.id.get_storage_size()
         if start is None or not hasattr(os, "pread"):
-            return heading_of(self.deck)
-        length = min(item.id.get_storage_size(), 1 << 16)  # the head of what may be long
-        head = os.pread(self.file.id.get_vfd_handle(), length, start)
-        return heading_of(head.decode("utf-8", "replace"))
+            return heading_of(self.array("model/deck"))[0]
+        for length in (min(size, HEAD), size):  # it mostly stands at the head of what may be long
+            deck = os.pread(self.file.id.get_vfd_handle(), length, start)
+            heading, whole = heading_of(deck)
+            if whole:
+                break
+        return heading
 
     @property
     def title(self):
@@ -205,8 +212,16 @@ class Result:
         return self.heading or os.path.basename(self.path)
 
     def to_pandas(self, group="history"):
-        """A table of the file, "history", "energy", "events", ..., as a pandas.DataFrame."""
-        return (self.events if group == "events" else self.table(group)).to_pandas()
+        """A table of the file, "history", "energy", "events", "frequency", as a pandas.DataFrame."""
+        if group in self.file and group.strip("/").split("/")[0] not in TABLES:
+            raise ScriptError(f"'{self.path}': /{group} is no table (tables are {', '.join(TABLES)}); "
+                              f'result.array("{group}/NAME") has one of its datasets')
+        if group == "events":
+            return self.events.to_pandas()
+        table = self.table(group)
+        if group == "frequency":  # the moving mass has no row a mode
+            table = Table({n: table[n] for n in table.names if n != "moving_mass"}, table._missing)
+        return table.to_pandas()
 
 
 def opened(path):
@@ -230,16 +245,14 @@ def columns_of(group, prefix=""):
 
 
 def heading_of(deck):
-    """The lines below *HEADING in one."""
-    found, inside = [], False
-    for line in deck.splitlines():
-        text = line.strip()
-        if text.startswith("**"):
-            continue
-        if text.startswith("*"):
-            if inside:
-                break
-            inside = text[1:].split(",")[0].strip().upper() == "HEADING"
-        elif inside and text:
-            found.append(text)
-    return " ".join(found)
+    """The lines below *HEADING in one, of the bytes of a deck, and whether a card ends them."""
+    for found in HEADING.finditer(deck):
+        if not deck[deck.rfind(b"\n", 0, found.start()) + 1 : found.start()].strip():
+            break
+    else:
+        return "", False
+    _, _, below = deck[found.end() :].partition(b"\n")
+    end = CARD.search(below)
+    lines = below[: end.start() if end else None].decode("utf-8", "replace").split("\n")
+    texts = [line.strip() for line in lines]
+    return " ".join(t for t in texts if t and not t.startswith("**")), end is not None

@@ -1,7 +1,12 @@
 """What every script needs: the error the user can put right, and the way a script ends."""
 
+import argparse
 import importlib
+import math
+import string
 import sys
+
+FOLDING = str.maketrans(string.ascii_lowercase, string.ascii_uppercase, " \t\r\n")
 
 
 class ScriptError(Exception):
@@ -23,6 +28,22 @@ def run(main):
         sys.exit(f"error: {error}")
     except BrokenPipeError:
         sys.exit(1)
+
+
+def finite(text):
+    """An argument that is a number, and finite."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"'{text}' is no finite number")
+    return value
+
+
+def folded(name):
+    """A name as carom has it: without blanks, a to z in upper case, other letters as they are."""
+    return name.translate(FOLDING)
 
 
 def need(package, what):

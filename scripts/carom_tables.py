@@ -8,6 +8,7 @@ from carom_script import MissingError, need
 
 BLOCK = 1 << 16  # rows in memory at a time
 BINS = 2000  # columns of pixels that a picture has at most
+DIGITS = "0123456789"  # str.isdigit takes ² too
 
 
 class Rows:
@@ -95,10 +96,12 @@ class Table:
         return [*super().__dir__(), *self._columns]
 
     def select(self, patterns):
-        """The names that match the comma-separated ones (with * and ?), in the order given."""
+        """The names that are the comma-separated ones, or match them (with * and ?), in the order given."""
         chosen = []
         for pattern in filter(None, (item.strip().strip("/") for item in patterns.split(","))):
-            matching = [name for name in self.names if fnmatch.fnmatchcase(name, pattern)]
+            text = pattern.replace("[", "[[]")
+            matching = [pattern] if pattern in self else \
+                [name for name in self.names if fnmatch.fnmatchcase(name, text)]
             if not matching:
                 raise MissingError(self._missing(pattern, self.names))
             chosen += [name for name in matching if name not in chosen]
@@ -116,19 +119,42 @@ class Table:
         return {"time": time, **dict(zip(names, curves))}
 
     def to_pandas(self):
-        """A pandas.DataFrame, its index `time` if there is such a column."""
-        frame = need("pandas", "to_pandas").DataFrame(self.arrays())
+        """A pandas.DataFrame, its index `time` if there is such a column; a column of vectors is three:
+        effective_mass_x, _y, _z."""
+        columns = {}
+        for name, values in self.arrays().items():
+            parts = {name: values} if values.ndim == 1 else \
+                {f"{name}_{axis}": part for axis, part in zip("xyz", values.T)}
+            columns.update(parts)
+        frame = need("pandas", "to_pandas").DataFrame(columns)
         return frame.set_index("time") if "time" in frame else frame
 
 
 class Events(Table):
-    """The rows of /events: iterate over them, or take a column as with other tables."""
+    """The rows of /events: iterate over them, take one by its number, as events[-1], or a column as
+    with other tables."""
 
     def __iter__(self):
-        row = collections.namedtuple("Event", self._columns)
         for begin in range(0, len(self), BLOCK):
-            yield from map(row._make, zip(*(column[begin : begin + BLOCK].tolist()
-                                            for column in self._columns.values())))
+            yield from self._rows(slice(begin, begin + BLOCK))
+
+    def __getitem__(self, name):
+        if isinstance(name, slice):
+            chosen = range(len(self))[name]
+            first, last = (min(chosen), max(chosen)) if chosen else (0, -1)
+            rows = list(self._rows(slice(first, last + 1)))
+            return [rows[k - first] for k in chosen]
+        if not isinstance(name, (int, np.integer)):
+            return super().__getitem__(name)
+        if not -len(self) <= name < len(self):
+            raise IndexError(f"there are {len(self)} events, none with the number {name}")
+        begin = int(name) % len(self)
+        return next(self._rows(slice(begin, begin + 1)))
+
+    def _rows(self, rows):
+        """Some events in order."""
+        row = collections.namedtuple("Event", self._columns)
+        return map(row._make, zip(*(column[rows].tolist() for column in self._columns.values())))
 
     def filter(self, **wanted):
         """The events whose columns have these values: filter(kind="impact", node=5)."""
@@ -209,8 +235,8 @@ def envelope(time, curves, bins=BINS):
 
 def natural_key(name):
     """A key that sorts node_2 before node_10."""
-    digits = "".join(c if c.isdigit() else " " for c in name).split()
-    letters = "".join("0" if c.isdigit() else c for c in name)
+    digits = "".join(c if c in DIGITS else " " for c in name).split()
+    letters = "".join("0" if c in DIGITS else c for c in name)
     return letters.split("0")[0], [int(d) for d in digits], name
 
 

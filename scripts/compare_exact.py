@@ -20,7 +20,7 @@ from carom_plots import (
     two_numbers,
 )
 from carom_results import Result
-from carom_script import ScriptError, run
+from carom_script import ScriptError, finite, run
 from carom_tables import Computed, envelope
 from contact_solutions import bars_head_on, sliding_distance, stopping
 from exact_solutions import bar_contact_force, bouncing_ball, oscillator, two_dof
@@ -201,17 +201,17 @@ def main():
     parser = make_parser(__doc__, first=("case", list(CASES)))
     parser.add_argument("--columns", default="", help="columns of /history, comma-separated")
     parser.add_argument("--e", type=restitution, help="restitution (default 1; ball 0.8)")
-    parser.add_argument("--mass", type=float, default=1.0)
-    parser.add_argument("--stiffness", type=float, default=1.0)
-    parser.add_argument("--d0", type=float, default=1.0, help="initial displacement (1)")
-    parser.add_argument("--v0", type=float, default=0.0, help="initial velocity (0)")
-    parser.add_argument("--wall", type=float, default=-0.5, help="displacement at the wall (-0.5)")
-    parser.add_argument("--height", type=float, default=1.0, help="initial height (1)")
-    parser.add_argument("--gravity", type=float, default=9.81, help="(9.81)")
+    parser.add_argument("--mass", type=finite, default=1.0)
+    parser.add_argument("--stiffness", type=finite, default=1.0)
+    parser.add_argument("--d0", type=finite, default=1.0, help="initial displacement (1)")
+    parser.add_argument("--v0", type=finite, default=0.0, help="initial velocity (0)")
+    parser.add_argument("--wall", type=finite, default=-0.5, help="displacement at the wall (-0.5)")
+    parser.add_argument("--height", type=finite, default=1.0, help="initial height (1)")
+    parser.add_argument("--gravity", type=finite, default=9.81, help="(9.81)")
     parser.add_argument("--lengths", type=two_numbers, default=(10.0, 10.0), help="of bars (10,10)")
     parser.add_argument("--speeds", type=two_numbers, default=(5.0, -5.0), help="of bars (5,-5)")
-    parser.add_argument("--begin", type=float, default=0.05, help="when the bars meet (0.05)")
-    parser.add_argument("--mu", type=float, default=0.3, help="friction of the block (0.3)")
+    parser.add_argument("--begin", type=finite, default=0.05, help="when the bars meet (0.05)")
+    parser.add_argument("--mu", type=finite, default=0.3, help="friction of the block (0.3)")
     given = parser.parse_args()
     if given.e is None:
         given.e = 0.8 if given.case == "ball" else 1.0
@@ -222,7 +222,7 @@ def main():
 
 def restitution(text):
     """A coefficient of restitution, 0 to 1."""
-    value = float(text)
+    value = finite(text)
     if not 0.0 <= value <= 1.0:
         raise argparse.ArgumentTypeError("0 to 1")
     return value

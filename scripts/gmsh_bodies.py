@@ -6,7 +6,7 @@ groups: {name: (dimension, tags)}; a name is put behind that of the body, the em
 
 import math
 
-from carom_results import ScriptError
+from carom_script import ScriptError
 
 
 def need(condition, sentence):

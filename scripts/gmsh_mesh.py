@@ -4,11 +4,12 @@ import re
 
 import numpy as np
 
-from carom_results import ScriptError
+from carom_script import ScriptError, folded
 
 # gmsh's types of plane elements: corners, nodes that carom takes
 PLANE = {2: (3, 3), 3: (4, 4), 9: (3, 6), 16: (4, 8), 10: (4, 8)}
 FLAT = 1e-9     # of the size of the mesh
+LONGEST = 80    # bytes of a name
 
 
 class PlaneMesh:
@@ -48,14 +49,18 @@ class PlaneMesh:
 
     def read_groups(self):
         """The physical groups by name."""
+        written = {}  # each name as the user wrote it
         for dimension, tag in self.gmsh.model.getPhysicalGroups():
-            name = self.name_of(dimension, tag)
+            own = self.gmsh.model.getPhysicalName(dimension, tag)
+            name = clean_name(own) or f"{('POINT', 'CURVE', 'SURFACE', 'VOLUME')[dimension]}_{tag}"
             entities = self.gmsh.model.getEntitiesForPhysicalGroup(dimension, tag)
             cells = [cell for entity in entities for cell in self.cells(dimension, entity)]
             if dimension == 3:
                 raise ScriptError(f"'{name}' is a group of volumes: bodies are plane here")
-            if name in {**self.areas, **self.curves, **self.points}:
-                raise ScriptError(f"two physical groups are called '{name}'")
+            if name in written:
+                raise ScriptError(f"two physical groups, '{written[name]}' and '{own}', are both '{name}' "
+                                  "in a deck: give one of them another name")
+            written[name] = own
             if dimension == 2:
                 self.areas[name] = [self.of_tag[tag] for tag, _, _ in cells]
             elif dimension == 1:
@@ -69,10 +74,6 @@ class PlaneMesh:
         """The nodes of points; those without an element have none of dimension 0."""
         found = [self.gmsh.model.mesh.getNodes(0, entity)[0] for entity in entities]
         return [self.place[int(node)] for nodes in found for node in nodes]
-
-    def name_of(self, dimension, tag):
-        name = self.gmsh.model.getPhysicalName(dimension, tag)
-        return clean_name(name) or f"{('POINT', 'CURVE', 'SURFACE')[dimension]}_{tag}"
 
     def drop_unused_nodes(self):
         """Centres of arcs and curves that bound nothing are no part of the body."""
@@ -137,6 +138,10 @@ class PlaneMesh:
         ends = np.array([edge[:2] for edge in edges])
         counts = np.bincount(ends.ravel(), minlength=len(self.x))
         tips = np.flatnonzero(counts == 1)
+        if len(edges) < 2:
+            length = np.linalg.norm(np.subtract(*self.x[ends[0]]))
+            raise ScriptError(f"the crack is one side of an element long, {length:g}, and has nothing "
+                              f"between its tips that could open: --size {length / 4:.3g} or less")
         inside = sorted({n for edge in edges for n in edge} - set(tips.tolist()))
         new = {node: len(self.x) + i for i, node in enumerate(inside)}
         start, along = self.x[tips[0]], self.x[tips[1]] - self.x[tips[0]]
@@ -151,8 +156,10 @@ class PlaneMesh:
 
 
 def clean_name(name):
-    """A name that a deck may have: no blanks, commas, quotes, '='; no number."""
-    name = re.sub(r"[\s,=\"'/*<>]+", "_", name.strip().upper()).strip("_")[:80]
+    """A name that a deck may have, as carom has it: none of the characters below, at most 80 bytes,
+    no number."""
+    name = folded(re.sub(r"[\s,=\"'/*<>]+", "_", name)).strip("_")
+    name = name.encode()[:LONGEST].decode(errors="ignore")
     return f"GROUP_{name}" if re.fullmatch(r"[-+\d]+", name) else name
 
 

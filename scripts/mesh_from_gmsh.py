@@ -7,8 +7,8 @@ WHAT is a body (disc, ring, plate, bolt) or a file of gmsh (.geo, .msh) or of CA
     of curves     NSET and, where they bound the body, *SURFACE of that name
     of points     NSET of that name
 
-Without groups of curves the *SURFACE PART_OUTLINE has all sides of the body. Names lose their
-blanks, quotes and commas (they become _). Elements are turned counterclockwise, nodes without
+Without groups of curves the *SURFACE PART_OUTLINE has all sides of the body. In names a to z become
+A to Z, and blanks and any of , = " ' / * < > become _. Elements are turned counterclockwise, nodes without
 elements left out, 9-node elements written with 8. Needs the Python package gmsh (pip install gmsh)
 and the system's libraries of OpenGL and X11.
 
@@ -25,7 +25,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from carom_results import ScriptError
+from carom_script import ScriptError, finite
 from gmsh_bodies import BODIES
 from gmsh_mesh import PlaneMesh, cards, clean_name
 
@@ -119,17 +119,16 @@ def default_size(options):
 def parse(arguments):
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    number = {"type": float}
     parser.add_argument("what", metavar="WHAT", help="disc, ring, plate, bolt or a file")
     parser.add_argument("-o", "--output", required=True, help="the file to write")
     parser.add_argument("--type", choices=["CPE", "CPS", "CAX"], default="CPE",
                         help="plane strain (default), plane stress, axisymmetric")
     parser.add_argument("--order", type=int, choices=[1, 2],
                         help="of the elements (default: 1, of a .geo what it says)")
-    parser.add_argument("--size", **number, help="of the elements")
+    parser.add_argument("--size", type=finite, help="of the elements")
     parser.add_argument("--quads", action="store_true", help="quadrilaterals where that can be")
-    parser.add_argument("--scale", default=1.0, **number, help="factor of all coordinates")
-    parser.add_argument("--at", nargs=2, default=(0.0, 0.0), metavar=("X", "Y"), **number,
+    parser.add_argument("--scale", default=1.0, type=finite, help="factor of all coordinates")
+    parser.add_argument("--at", nargs=2, default=(0.0, 0.0), metavar=("X", "Y"), type=finite,
                         help="what is added to them after that")
     parser.add_argument("--name", help="of a body's sets (default: the body)")
     parser.add_argument("--first-node", type=int, default=1, help="its number (default 1)")
@@ -143,7 +142,7 @@ def parse(arguments):
             ("length", 6.0, "of the shank"), ("head", 0.0, "radius (default: twice the shank's)"),
             ("thickness", 0.0, "of the head (default: the shank's radius)")):
         body.add_argument(f"--{name}", default=value, help=f"{what} (default {value:g})"
-                          if value else what, **number)
+                          if value else what, type=finite)
     options = parser.parse_args(arguments)
     if options.size is not None and options.size <= 0 or options.scale <= 0:
         parser.error("--size and --scale must be positive")

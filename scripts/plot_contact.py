@@ -14,7 +14,7 @@ from carom_plots import (
     two_numbers,
 )
 from carom_results import Result
-from carom_script import ScriptError, run
+from carom_script import ScriptError, finite, run
 from contact_solutions import hertz_line, hertz_pressure, pressure_of_forces
 
 COLOURS = [BLUE, ORANGE, GREEN, PURPLE, RED]
@@ -280,7 +280,7 @@ def main():
                         help="radius and modulus E* of the contact: the exact line contact")
     parser.add_argument("--half", action="store_true",
                         help="half of a symmetric contact is in the file")
-    parser.add_argument("--centre", type=float, default=0.0, help="of the exact curve (0)")
+    parser.add_argument("--centre", type=finite, default=0.0, help="of the exact curve (0)")
     parser.add_argument("--exact", help="a file with two columns: place, pressure")
     parser.add_argument("--range", type=two_numbers, metavar="A,B", help="what is shown")
     given = parser.parse_args()

@@ -9,7 +9,7 @@ from carom_plots import (
     axis_label, curve_style, deliver, head, label, legend_beside, make_parser, mark_events, plt,
     quantity,
 )
-from carom_results import Result
+from carom_results import WRITTEN_BY, Result
 from carom_script import ScriptError, run
 
 MOST_CURVES = 24
@@ -22,8 +22,11 @@ def choose(result, patterns):
     else:
         known = [name for name in result.history.names if name != "time"]
         chosen = [name for name in known if quantity(name) == "U"] or known
-    if not chosen:
+    if not chosen and patterns:
         raise ScriptError(f"'{result.path}': --columns names nothing but the time")
+    if not chosen:
+        raise ScriptError(f"'{result.path}' has nothing but the time in /history "
+                          f"({WRITTEN_BY['history']})")
     if len(chosen) > MOST_CURVES:
         print(f"note: only the first {MOST_CURVES} of {len(chosen)} columns are drawn")
     return chosen[:MOST_CURVES]

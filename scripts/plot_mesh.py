@@ -9,10 +9,11 @@ enlarged.
 import numpy as np
 from carom_mesh import VERTEX, Mesh
 from carom_plots import (
-    BLUE, GREEN, ORANGE, axis_label, colours_of, deliver, head, make_parser, plt,
+    BLUE, GREEN, ORANGE, axis_label, colours_of, deliver, head, legend_below, make_parser,
+    plt,
 )
 from carom_results import Result
-from carom_script import ScriptError, run
+from carom_script import ScriptError, finite, run
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
@@ -23,34 +24,14 @@ PLAIN = "#cfe3f2"
 SCHEMES = {1: (BLUE, "implicit"), 2: (ORANGE, "explicit"), 0: ("0.6", "neither")}
 
 
-def frequencies(mesh):
-    """The frequencies of the mode shapes that the frames are, by frame; empty if they are not."""
-    found = mesh.file.get("frequency/frequency")
-    if found is None:
-        return {}
-    first = mesh.n_frames - len(found)
-    return {first + i: value for i, value in enumerate(found[()])}
-
-
 def choose_frame(mesh, number):
     """The frame counted from 0."""
     n = mesh.n_frames
     if number is None:
-        return 0 if frequencies(mesh) else n - 1
+        return min(mesh.modes(), default=n - 1)
     if number == 0 or abs(number) > n:
         raise ScriptError(f"'{mesh.path}' has the frames 1 to {n} (-1 is the last), not {number}")
     return number - 1 if number > 0 else n + number
-
-
-def choose_scale(mesh, frame, is_mode):
-    """1, or for displacements that could not be seen a round number that shows them."""
-    size = max(np.ptp(mesh.points[:, :2], axis=0).max(), 1e-300)
-    most = np.linalg.norm(mesh.values("Point", "U", frame), axis=1).max()
-    if most <= 0 or not np.isfinite(most) or (most > 0.04 * size and not is_mode):
-        return 1.0
-    wanted = 0.1 * size / most
-    power = 10.0 ** np.floor(np.log10(wanted))
-    return float(power * max(factor for factor in (1, 2, 5) if factor * power <= wanted * 1.000001))
 
 
 class Drawing:
@@ -200,7 +181,7 @@ class Drawing:
         """Title and legend."""
         head(self.figure, result, title)
         if self.handles:
-            self.figure.legend(handles=self.handles, loc="outside lower center", ncols=3)
+            legend_below(self.figure, 3, handles=self.handles)
         return self.figure
 
 
@@ -210,7 +191,7 @@ def main():
     parser.add_argument("--cells", action="store_true", help="the field's mean in each element")
     parser.add_argument("--frame", type=int,
                         help="1 is the first state or mode, -1 the last (default: last, mode 1)")
-    parser.add_argument("--scale", type=float, help="factor on the displacements"
+    parser.add_argument("--scale", type=finite, help="factor on the displacements"
                         " (default: chosen to be seen)")
     parser.add_argument("--groups", action="store_true", help="colours: implicit and explicit")
     parser.add_argument("--supports", action="store_true", help="draw boundary conditions")
@@ -221,18 +202,18 @@ def main():
         raise ScriptError("--cells goes with --field")
     with Result(given.result) as result:
         mesh = Mesh(result)
-        modes = frequencies(mesh)
+        modes = mesh.modes()
         frame = choose_frame(mesh, given.frame)
         scale = given.scale
         if scale is None:
-            scale = choose_scale(mesh, frame, frame in modes)
+            scale = mesh.visible_scale(frame)
         drawing = Drawing(mesh, frame, scale, bool(given.field),
                           given.groups or given.supports)
         if scale != 0:
             drawing.undeformed()
         title = f"time {mesh.times[frame]:.4g}"
         if frame in modes:
-            title = f"mode {frame - min(modes) + 1}, frequency {modes[frame]:.5g}"
+            title = mesh.mode_title(frame)
         else:
             title += f", displacements × {scale:.4g}"
         if given.field:

@@ -7,10 +7,10 @@ histories the picture shows how many rows lie in each pixel.
 
 import numpy as np
 from carom_plots import (
-    BLACK, BLUE, RED, deliver, head, label, make_parser, plt,
+    BLACK, BLUE, RED, deliver, head, label, legend_below, make_parser, plt,
 )
 from carom_results import Result
-from carom_script import ScriptError, run
+from carom_script import ScriptError, finite, run
 from carom_tables import Computed, minmax
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm
@@ -19,19 +19,29 @@ WORST_MISMATCH = 1.5  # between an event's and the history's velocity, in change
 MOST_ROWS = 200000  # beyond which the number of rows in each pixel is drawn, not the path
 MOST_JUMPS = 400  # impacts beyond which they are not drawn
 PIXELS = 360
+DOFS = (1, 2, 3)
 
 
-def choose_node(result, dof):
-    """The node of the first impact that has a history, else the first node that has one."""
-    nodes = [node for node in result.nodes
-             if f"U{dof}" in result.node(node) and f"V{dof}" in result.node(node)]
-    if not nodes:
-        raise ScriptError(
-            f"'{result.path}' has no node with both U{dof} and V{dof} in /history "
-            "(*NODE PRINT with U, V)"
-        )
-    known = set(nodes)
-    return next((event.node for event in result.events if event.node in known), nodes[0])
+def choose(result, node, dof):
+    """Node and freedom: as asked, or the first freedom that has both U and V at some node; of nodes
+    with them that of the first impact, else the first."""
+    nodes = result.nodes if node is None else [node]
+    there = {}
+    for number in nodes:
+        history = result.node(number)
+        for n in DOFS:
+            if f"U{n}" in history and f"V{n}" in history:
+                there.setdefault(n, []).append(number)
+    if dof not in (there if dof else [None]) or not there:
+        which = "node" if node is None else f"node {node}"
+        wanted = f"both U{dof} and V{dof}" if dof else "both U and V in one direction"
+        known = " or ".join(f"--dof {n}" for n in there)
+        raise ScriptError(f"'{result.path}' has no {which} with {wanted} in /history "
+                          f"(*NODE PRINT with U, V)" + (f"; there is {known}" if known else ""))
+    dof = dof or min(there)
+    known = set(there[dof])
+    hit = (event.node for event in result.events if event.node in known)
+    return next(hit, there[dof][0]), dof
 
 
 def jumps(events, time, d, v):
@@ -128,7 +138,7 @@ def draw(result, node, dof, wall):
     axes.set_ylabel(f"velocity {label(f'node_{node}/V{dof}')}")
     axes.margins(0.06)
     if axes.get_legend_handles_labels()[1]:
-        figure.legend(loc="outside lower center", ncols=4)
+        legend_below(figure, 4)
     head(figure, result)
     return figure
 
@@ -136,12 +146,12 @@ def draw(result, node, dof, wall):
 def main():
     parser = make_parser(__doc__)
     parser.add_argument("--node", type=int, help="its id (default: the first that hits something)")
-    parser.add_argument("--dof", type=int, default=1, choices=(1, 2, 3), help="default 1")
-    parser.add_argument("--wall", type=float, help="displacement at which the wall stands")
+    parser.add_argument("--dof", type=int, choices=DOFS, help="default: the first there is")
+    parser.add_argument("--wall", type=finite, help="displacement at which the wall stands")
     given = parser.parse_args()
     with Result(given.result) as result:
-        node = given.node or choose_node(result, given.dof)
-        deliver(draw(result, node, given.dof, given.wall), given, result, "_phase.png")
+        node, dof = choose(result, given.node, given.dof)
+        deliver(draw(result, node, dof, given.wall), given, result, "_phase.png")
 
 
 if __name__ == "__main__":

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from carom_deck import Deck, parse_number, squeezed
-from carom_script import ScriptError
+from carom_deck import Deck, parse_number
+from carom_script import ScriptError, folded
 from contact_solutions import bars_head_on
 from exact_solutions import bouncing_ball, masses_in_line, oscillator, two_dof
 
@@ -46,7 +46,7 @@ def signature(deck):
         kept = {"INTERACTION"} if card.keyword == "CONTACTPAIR" else set(card.parameters)
         words.append(card.keyword)
         words += sorted(f"{k}={card.parameters[k][1]}" for k in kept & set(card.parameters))
-        words += [squeezed(line) for line in card.data]
+        words += [folded(line) for line in card.data]
     return "\n".join(words)
 
 
@@ -69,13 +69,13 @@ def exact_solution(name, deck, defined):
     if case not in CASES:
         raise ScriptError(f"no exact solution '{case}'; there are: {', '.join(CASES)}, none")
     values = {k: parse_number(v) for k, v in deck.definitions().items()}
-    values.update((squeezed(k), float(v)) for k, v in defined.items())
+    values.update((folded(k), float(v)) for k, v in defined.items())
     for item in filter(None, rest.split(",")):
         key, _, text = item.partition("=")
         number = parse_number(text)
         if number is None:
             raise ScriptError(f"--exact {name}: '{item}' is not NAME=NUMBER")
-        values[squeezed(key)] = number
+        values[folded(key)] = number
     return CASES[case](values, deck)
 
 
@@ -208,7 +208,7 @@ def printed_places(deck):
     wanted = set()
     for name in {card.get("NSET", "") for card in deck.cards("NODE PRINT")} - {""}:
         for card in deck.cards("NSET"):
-            if squeezed(card.get("NSET", "")) == squeezed(name) and not card.has("GENERATE"):
+            if folded(card.get("NSET", "")) == folded(name) and not card.has("GENERATE"):
                 wanted.update(word.strip() for line in card.data for word in line.split(","))
     places = {}
     for card in deck.cards("NODE"):

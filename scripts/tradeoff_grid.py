@@ -5,8 +5,8 @@ import itertools
 import math
 from dataclasses import dataclass, field
 
-from carom_deck import Deck, number_text, parse_number, squeezed
-from carom_script import ScriptError
+from carom_deck import Deck, number_text, parse_number
+from carom_script import ScriptError, folded
 
 METHODS = ["TRANSFORMATION", "FICTITIOUS FORCE", "PENALTY", "LAGRANGE"]
 
@@ -106,7 +106,7 @@ def as_written(value):
 
 def method_called(word):
     """The method that begins so."""
-    found = [m for m in METHODS if squeezed(m).startswith(squeezed(word))]
+    found = [m for m in METHODS if folded(m).startswith(folded(word))]
     if len(found) != 1:
         raise ScriptError(f"--method {word}: no such method; there are: {', '.join(METHODS)}")
     return found[0]
@@ -163,7 +163,7 @@ def make_grid(deck, axes, problems, steps, tolerances, quick=False):
     check_axes(deck, axes)
     known = deck.definitions()
     for name in problems:
-        if squeezed(name) not in known:
+        if folded(name) not in known:
             raise ScriptError(f"--define {name}: '{deck.path}' has no such *PARAMETER; it has: "
                               + (", ".join(known) or "none"))
     count = math.prod(len(v) for v in (*axes.values(), *problems.values()))
@@ -218,7 +218,7 @@ def meaningful(deck, settings):
 def own_method(deck):
     """METHOD of the deck."""
     own = deck.get("IMPACT", "METHOD") or METHODS[0]
-    same = [method for method in METHODS if squeezed(method) == squeezed(own)]
+    same = [method for method in METHODS if folded(method) == folded(own)]
     return (same or METHODS)[0]
 
 
@@ -253,11 +253,11 @@ def set_method(deck, settings):
     for card in deck.cards("IMPACT"):
         if "method" in settings:
             card.set("METHOD", settings["method"])
-        method = squeezed(card.get("METHOD") or METHODS[0])
+        method = folded(card.get("METHOD") or METHODS[0])
         for keyword, parameter, methods, _ in AXES.values():
-            if keyword == "IMPACT" and method not in map(squeezed, methods):
+            if keyword == "IMPACT" and method not in map(folded, methods):
                 card.set(parameter, None)
-        if method not in map(squeezed, METHODS[:2]):
+        if method not in map(folded, METHODS[:2]):
             card.set("CAPTURE", None)
         if settings.get("events") == "ANCHOR" or settings.get("order") == "4":
             card.set("BETA", None)

@@ -5,7 +5,7 @@ import textwrap
 import numpy as np
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from carom_plots import BLACK, COLOURS, RED, plt
+from carom_plots import BLACK, COLOURS, RED, plain, plt
 from tradeoff_advice import front, grouped, series_of
 
 MARKERS = "osD^vP*Xh<>p"
@@ -37,7 +37,7 @@ def draw(rows, errors, cost, fits, wanted=None, choice=None, title=""):
             members = [row for row in rows if row.point.problem_text == problem]
             chosen = [] if i or choice is None else choice.rows
             panel_of(panel, members, error, cost, fits, names, chosen, None if i else wanted)
-            panel.set_title("" if i else problem or title, fontsize=12)
+            panel.set_title("" if i else plain(problem or title), fontsize=12)
             if i == len(errors) - 1:
                 panel.set_xlabel(COST_LABELS.get(cost, cost.replace("_", " ")))
             if j == 0:
@@ -46,7 +46,7 @@ def draw(rows, errors, cost, fits, wanted=None, choice=None, title=""):
         panels[i][-1].legend(handles=legend, loc="upper left", bbox_to_anchor=(1.02, 1.0),
                              borderaxespad=0.0, fontsize=10)
     if title and any(problems):
-        figure.suptitle(title, fontsize=13)
+        figure.suptitle(plain(title), fontsize=13)
     return figure
 
 
@@ -131,7 +131,7 @@ def legend_of(panels, names, fits, error, wanted, choice):
         handles.append(plt.Line2D(
             [], [], color=colour_of(number), marker=MARKERS[number % len(MARKERS)], ms=6.5, lw=1.8,
             ls=DASHES[number // len(COLOURS) % len(DASHES)],
-            label="\n".join(textwrap.wrap(legend_text(name, fits, error), 44)),
+            label=plain("\n".join(textwrap.wrap(legend_text(name, fits, error), 44))),
         ))
     handles.append(plt.Line2D([], [], color="0.75", lw=6, label="front: nothing is better in both"))
     if wanted is not None:

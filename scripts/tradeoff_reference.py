@@ -2,8 +2,8 @@
 
 from dataclasses import replace
 
-from carom_deck import run_deck, squeezed
-from carom_script import ScriptError
+from carom_deck import run_deck
+from carom_script import ScriptError, folded
 from tradeoff_advice import grouped, series_of
 from tradeoff_errors import Reference, Trace, extrapolate
 from tradeoff_grid import edited_deck
@@ -20,7 +20,7 @@ def parse_reference(text):
         name, equals, value = item.partition("=")
         if not equals:
             raise ScriptError(f"--reference {text}: write NAME=VALUE of the settings")
-        wanted[name.strip().lower()] = squeezed(value)
+        wanted[name.strip().lower()] = folded(value)
     return wanted
 
 
@@ -41,12 +41,12 @@ def find_references(rows, folder, wanted):
 
 def fits(point, wanted):
     """Whether a point has the settings asked for."""
-    return all(squeezed(str(point.settings.get(n, ""))).startswith(v) for n, v in wanted.items())
+    return all(folded(str(point.settings.get(n, ""))).startswith(v) for n, v in wanted.items())
 
 
 def trust(point):
     """Smaller for series whose limit is believed first."""
-    method = squeezed(point.settings.get("method", TRUST[0]))
+    method = folded(point.settings.get("method", TRUST[0]))
     order = point.settings.get("order") == "4"
     restitution = point.settings.get("restitution") == "none"
     return (not order, TRUST.index(method) if method in TRUST else len(TRUST), restitution)

@@ -19,10 +19,13 @@ _carom_files() {
 
 # The next word of the cards that begin with the words behind `help`; most names have one or two
 _carom_cards() {
-   local before="${COMP_WORDS[*]:2:COMP_CWORD-2}" names
+   local before="${COMP_WORDS[*]:2:COMP_CWORD-2}" names name
+   before=${before,,}${before:+ }
    names=$("${COMP_WORDS[0]}" help --table 2>/dev/null | cut -d ';' -f 1 | tr '[:upper:]' '[:lower:]')
-   [[ -z $before ]] || names=$(sed -n "s/^${before,,} //p" <<<"$names")
-   compgen -W "$(cut -d ' ' -f 1 <<<"$names" | sort -u)" -- "${current,,}"
+   names=$(while IFS= read -r name; do
+      [[ $name == "$before"* ]] && name=${name#"$before"} && printf '%s\n' "${name%% *}"
+   done <<<"$names" | sort -u)
+   compgen -W "$names" -- "${current,,}"
 }
 
 _carom_deck() {
@@ -46,6 +49,8 @@ _carom() {
    help) before='help' ;;
    *) return ;;
    esac
+   # the value in --define dt=0.1: the shell makes words of dt, = and 0.1
+   [[ $current == = || $before == = ]] && return
    case $before in
    help) words=$(_carom_cards) ;;
    -o | --restart)

@@ -69,7 +69,7 @@ configure_file(${packaging}/changelog.Debian.in ${PROJECT_BINARY_DIR}/changelog.
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-h5py, python3-matplotlib, python3-numpy")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-h5py (>= 3.5), python3-matplotlib (>= 3.6), python3-numpy")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "paraview")
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 

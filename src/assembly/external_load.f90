@@ -2,16 +2,19 @@
 module external_load
    use kinds, only: wp
    use memory_shortage, only: check_allocation
-   use histories, only: amplitude_type, time_step, distributed_load_type, load_pressure, &
-         load_body, load_centrifugal
+   use state_archive, only: archive_type
+   use histories, only: amplitude_type, time_step, distributed_load_type, load_body, &
+         load_centrifugal
    use amplitude_value, only: amplitude_at, amplitude_start, corner_after
    use model, only: model_type
    use steps, only: step_type, procedure_static
-   use structure, only: structure_type, inertia_force
+   use structure, only: structure_type
+   use load_patterns, only: distributed_pattern, gravity_pattern, base_pattern
    implicit none
    private
 
    public :: load_set_type, begin_loads, load_at, next_load_corner
+   public :: add_reactions, set_reactions
 
    !> A pattern of forces times a factor of time.
    type :: load_type
@@ -21,6 +24,7 @@ module external_load
       real(wp), allocatable :: pattern(:)        !! (n_freedoms) at full size
       real(wp), allocatable :: start(:)          !! (n_freedoms) what it is ramped from
       logical :: ramped = .false.
+      logical :: going = .false.                 !! dropped: it goes down over a static step
       logical :: has_amplitude = .false.
       type(amplitude_type) :: amplitude
       real(wp) :: t_start = 0.0_wp
@@ -31,17 +35,33 @@ module external_load
    integer, parameter :: kind_gravity = 2
    integer, parameter :: kind_base = 3
    integer, parameter :: kind_distributed = 4
+   integer, parameter :: kind_reaction = 5
 
    !> All loads in force.
    type :: load_set_type
       type(load_type), allocatable :: loads(:)
+   contains
+      procedure :: pass_state
    end type load_set_type
 
 contains
 
+   !> What loads have taken from the motion, the reactions of supports that go; the rest is the
+   !> deck's.
+   subroutine pass_state(self, archive)
+      class(load_set_type), intent(inout) :: self
+      type(archive_type), intent(inout) :: archive
+      integer :: i
+
+      do i = 1, size(self%loads)
+         if (self%loads(i)%kind == kind_reaction) call archive%pass_fixed('reactions', &
+               self%loads(i)%start)
+      end do
+   end subroutine pass_state
+
    !> Brings the loads of a step into force. Loads of earlier steps go on unless the step says
    !> OP=NEW or loads the same freedom anew; without an amplitude a load is ramped over a static
-   !> step and applied at once in a dynamic one.
+   !> step and applied at once in a dynamic one. What OP=NEW drops goes in the same way.
    subroutine begin_loads(self, structure, model, i_step, t)
       type(load_set_type), intent(inout) :: self
       type(structure_type), intent(in) :: structure
@@ -68,15 +88,15 @@ contains
       end associate
    end subroutine begin_loads
 
-   !> Keeps what goes on: an amplitude on total time goes on by it, all else stays as it is. A
-   !> base motion ends with its step.
+   !> Keeps what goes on: an amplitude on total time goes on by it, all else stays as it is. What a
+   !> static step drops is ramped down from its size. A base motion ends with its step.
    subroutine hold_earlier(self, step, t)
       type(load_set_type), intent(inout) :: self
       type(step_type), intent(in) :: step
       real(wp), intent(in) :: t
       type(load_type), allocatable :: kept(:)
       real(wp) :: weight(2)
-      logical :: keep
+      logical :: keep, going
       integer :: i, n, status
 
       allocate (kept(size(self%loads)), stat=status)
@@ -87,17 +107,58 @@ contains
          if (self%loads(i)%kind == kind_point) keep = .not. step%new_loads
          if (self%loads(i)%kind == kind_gravity) keep = .not. step%new_gravity
          if (self%loads(i)%kind == kind_distributed) keep = .not. step%new_distributed
-         if (.not. keep) cycle
+         going = .not. keep .and. step%procedure == procedure_static .and. &
+               self%loads(i)%kind /= kind_base
+         if (self%loads(i)%going .or. .not. (keep .or. going)) cycle
          n = n + 1
          kept(n) = self%loads(i)
-         if (kept(n)%has_amplitude .and. kept(n)%amplitude%time /= time_step) cycle
+         if (keep .and. kept(n)%has_amplitude .and. kept(n)%amplitude%time /= time_step) cycle
          weight = weights(self%loads(i), t)
          kept(n)%pattern = weight(1)*self%loads(i)%start + weight(2)*self%loads(i)%pattern
          kept(n)%has_amplitude = .false.
          kept(n)%ramped = .false.
+         if (going) call let_down(kept(n), step%duration, t)
       end do
       self%loads = kept(:n)
    end subroutine hold_earlier
+
+   !> Ramps a load from its pattern down to nothing.
+   pure subroutine let_down(load, duration, t)
+      type(load_type), intent(inout) :: load
+      real(wp), intent(in) :: duration           !! of the step
+      real(wp), intent(in) :: t                  !! total time at its start
+
+      load%start = load%pattern
+      load%pattern = 0.0_wp
+      load%ramped = .true.
+      load%going = .true.
+      load%t_start = t
+      load%duration = duration
+   end subroutine let_down
+
+   !> Makes room for the reactions of supports that a static step drops: they go down over it.
+   subroutine add_reactions(self, n_freedoms, duration, t)
+      type(load_set_type), intent(inout) :: self
+      integer, intent(in) :: n_freedoms
+      real(wp), intent(in) :: duration           !! of the step
+      real(wp), intent(in) :: t                  !! total time at its start
+      real(wp) :: none(n_freedoms)
+
+      none = 0.0_wp
+      call append(self, kind_reaction, none)
+      call let_down(self%loads(size(self%loads)), duration, t)
+   end subroutine add_reactions
+
+   !> Gives supports that go the reactions they have had.
+   pure subroutine set_reactions(self, reaction)
+      type(load_set_type), intent(inout) :: self
+      real(wp), intent(in) :: reaction(:)        !! (n_freedoms)
+      integer :: i
+
+      do i = 1, size(self%loads)
+         if (self%loads(i)%kind == kind_reaction) self%loads(i)%start = reaction
+      end do
+   end subroutine set_reactions
 
    !> Gravity on a set replaces that of earlier steps on the same set.
    subroutine add_gravity(self, structure, model, step, t)
@@ -173,51 +234,6 @@ contains
          self%loads(j)%pattern = 0.0_wp
       end do
    end subroutine replace_earlier
-
-   !> Nodal forces of a distributed load on the elements of its set (0: all).
-   function distributed_pattern(structure, model, load) result(pattern)
-      type(structure_type), intent(in) :: structure
-      type(model_type), intent(in) :: model
-      type(distributed_load_type), intent(in) :: load
-      real(wp) :: pattern(structure%map%n_freedoms)
-      logical :: member(model%elements%n), exists
-      real(wp), allocatable :: local(:)
-      integer :: g, e, status
-
-      member = load%set == 0
-      if (load%set > 0) member(model%element_sets(load%set)%members) = .true.
-      pattern = 0.0_wp
-      do g = 1, size(structure%groups)
-         associate (group => structure%groups(g))
-            allocate (local(size(group%lm, 1)), stat=status)
-            call check_allocation(status)
-            do e = 1, size(group%member)
-               if (.not. member(group%member(e))) cycle
-               select case (load%kind)
-               case (load_pressure)
-                  call group%element%edge_load(e, load%edge, load%value, local, exists)
-               case (load_body)
-                  call group%element%body_load(e, load%body, local)
-               case default
-                  call group%element%centrifugal_load(e, load%value, load%point, load%axis, local)
-               end select
-               call scatter_one(group%lm(:, e), local, pattern)
-            end do
-            deallocate (local)
-         end associate
-      end do
-   end function distributed_pattern
-
-   pure subroutine scatter_one(lm, local, force)
-      integer, intent(in) :: lm(:)
-      real(wp), intent(in) :: local(:)
-      real(wp), intent(inout) :: force(:)
-      integer :: i
-
-      do i = 1, size(lm)
-         if (lm(i) > 0) force(lm(i)) = force(lm(i)) + local(i)
-      end do
-   end subroutine scatter_one
 
    !> Loads on one freedom in one step add up; they replace those of earlier steps there.
    subroutine add_point_loads(self, structure, model, step, t)
@@ -299,52 +315,6 @@ contains
       if (load%has_amplitude) load%amplitude = model%amplitudes(amplitude)
       load%ramped = step%procedure == procedure_static .and. .not. load%has_amplitude
    end subroutine give_time
-
-   !> M times the acceleration, on the elements of a set (0: all). Weight stays with the elements:
-   !> where contact nodes have lost their mass, they keep their load.
-   function gravity_pattern(structure, model, set, acceleration) result(pattern)
-      type(structure_type), intent(in) :: structure
-      type(model_type), intent(in) :: model
-      integer, intent(in) :: set
-      real(wp), intent(in) :: acceleration(3)
-      real(wp) :: pattern(structure%map%n_freedoms)
-      logical :: member(model%elements%n)
-      real(wp), allocatable :: m(:, :)
-      integer :: g, e, i, status
-
-      member = set == 0
-      if (set > 0) member(model%element_sets(set)%members) = .true.
-      pattern = 0.0_wp
-      do g = 1, size(structure%groups)
-         associate (group => structure%groups(g))
-            i = size(group%lm, 1)
-            allocate (m(i, i), stat=status)
-            call check_allocation(status)
-            do e = 1, size(group%member)
-               if (.not. member(group%member(e))) cycle
-               call group%element%mass(e, group%lumped, m)
-               m(:, 1) = matmul(m, [(acceleration(modulo(i - 1, 3) + 1), i=1, size(m, 1))])
-               do i = 1, size(m, 1)
-                  if (group%lm(i, e) == 0) cycle
-                  pattern(group%lm(i, e)) = pattern(group%lm(i, e)) + m(i, 1)
-               end do
-            end do
-            deallocate (m)
-         end associate
-      end do
-   end function gravity_pattern
-
-   !> -M r: inertia of a ground acceleration of unit size along one direction.
-   function base_pattern(structure, dof, scale) result(pattern)
-      type(structure_type), intent(in) :: structure
-      integer, intent(in) :: dof
-      real(wp), intent(in) :: scale
-      real(wp) :: pattern(structure%map%n_freedoms)
-      real(wp) :: along(structure%map%n_freedoms)
-
-      along = merge(scale, 0.0_wp, structure%map%dof == dof)
-      pattern = -inertia_force(structure, along)
-   end function base_pattern
 
    !> All applied forces at total time t.
    pure function load_at(self, n_freedoms, t) result(force)

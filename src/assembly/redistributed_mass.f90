@@ -6,9 +6,9 @@
 !> not stay so along the normal. Element by element the mass goes to the other nodes of the element,
 !> in proportion to their lumped mass over the square of their distance from the contact nodes; then
 !> each body gets back its centre and moments of inertia (`body_moments`). An element's matrix M
-!> becomes (1 + p) (D M D + diag(moved)), D zero at contact nodes. Weight, other body forces and
-!> Rayleigh's alpha M stay where the elements have them; the inertia of a base motion follows the
-!> mass.
+!> becomes (1 + p) (D M D + diag(moved)), D zero at contact nodes. Weight and the inertia of a base
+!> motion follow the mass, so that what falls freely is not strained; other body forces and
+!> Rayleigh's alpha M stay where the elements have them.
 module redistributed_mass
    use kinds, only: wp
    use disjoint_sets, only: join, top_of

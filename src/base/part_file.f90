@@ -81,7 +81,9 @@ contains
       if (len(self%path) == 0) self%path = true_path(folder_of(path))//'/' &
             //path(index(path, '/', back=.true.) + 1:)
       before = look_at(part_path(self))
-      call lock_part(self, error)
+      call refuse_odd(self, part_ending, error)
+      if (.not. allocated(error)) call refuse_odd(self, copy_ending, error)
+      if (.not. allocated(error)) call lock_part(self, error)
       if (allocated(error)) return
       ! another run may have ended since
       call check_output(path, may_replace, error)
@@ -92,6 +94,20 @@ contains
       end if
       call remove_file(self%path//copy_ending)
    end subroutine claim
+
+   !> What stands in the place of a file beside the output and is none is left alone: it could
+   !> neither be written to nor be removed, or it would wait for a reader for ever.
+   subroutine refuse_odd(self, ending, error)
+      type(part_file_type), intent(in) :: self
+      character(len=*), intent(in) :: ending
+      type(error_type), allocatable, intent(out) :: error
+      type(file_facts_type) :: facts
+
+      facts = look_at(self%path//ending)
+      if (.not. facts%exists .or. is_regular(facts)) return
+      call file_error(error, self%shown//ending, 'it is a directory, pipe or device', &
+            'remove it, or give the results another name with -o')
+   end subroutine refuse_odd
 
    !> Opens and locks the part file.
    subroutine lock_part(self, error)
@@ -239,6 +255,8 @@ contains
                lost_cure)
          return
       end if
+      call refuse_odd(self, copy_ending, error)
+      if (allocated(error)) return
       call replace_by_copy(self, reason)
       if (len(reason) > 0) call full_error(self, reason, error)
    end subroutine publish
@@ -248,6 +266,8 @@ contains
       type(part_file_type), intent(inout) :: self
       character(len=:), allocatable, intent(out) :: reason
 
+      ! a pipe, say, would wait for a reader
+      call remove_file(self%path//copy_ending)
       call copy_open(self%descriptor, self%path//copy_ending, .true., reason)
       if (len(reason) == 0) call rename_file(self%path//copy_ending, self%path, reason)
       if (len(reason) > 0) call remove_file(self%path//copy_ending)

@@ -148,8 +148,7 @@ contains
          if (card%keyword /= card_before%keyword .or. card%step /= card_before%step) then
             call fail_at(error, new%source, card%place, 'the deck has changed: here was ' &
                   //described(old, j), cure=allowed)
-         else if (.not. same_parameters(card, card_before, in_step .and. card%keyword == 'STEP')) &
-               then
+         else if (.not. same_parameters(card, card_before, in_step)) then
             call fail_at(error, new%source, card%place, 'the deck has changed: this card was ' &
                   //described(old, j), cure=allowed)
          end if
@@ -169,26 +168,37 @@ contains
       end associate
    end subroutine compare_cards
 
-   !> Whether the parameters are the same in any order.
-   pure function same_parameters(a, b, skip_inc) result(same)
-      type(card_type), intent(in) :: a, b
-      logical, intent(in) :: skip_inc            !! INC does not count
+   !> Whether the parameters are the same in any order, but for those that compute nothing.
+   pure function same_parameters(a, b, in_step) result(same)
+      type(card_type), intent(in) :: a, b        !! of one keyword
+      logical, intent(in) :: in_step             !! the card stands in the step reached
       logical :: same
       integer :: i, k
 
       same = .false.
       do i = 1, size(a%parameters)
-         if (skip_inc .and. a%parameters(i)%name == 'INC') cycle
+         if (may_change(a, a%parameters(i)%name, in_step)) cycle
          k = parameter_index(b, a%parameters(i)%name)
          if (k == 0) return
          if (.not. same_value(a%parameters(i), b%parameters(k))) return
       end do
       do k = 1, size(b%parameters)
-         if (skip_inc .and. b%parameters(k)%name == 'INC') cycle
+         if (may_change(b, b%parameters(k)%name, in_step)) cycle
          if (.not. has_parameter(a, b%parameters(k)%name)) return
       end do
       same = .true.
    end function same_parameters
+
+   !> A name for the log, where to stop.
+   pure function may_change(card, name, in_step) result(free)
+      type(card_type), intent(in) :: card
+      character(len=*), intent(in) :: name
+      logical, intent(in) :: in_step
+      logical :: free
+
+      free = card%keyword == 'STEP' .and. (name == 'NAME' .or. (name == 'INC' .and. in_step))
+      free = free .or. (card%keyword == 'ENERGYPRINT' .and. name == 'LIMIT')
+   end function may_change
 
    pure function same_value(a, b) result(same)
       type(parameter_type), intent(in) :: a, b

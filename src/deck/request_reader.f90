@@ -65,6 +65,12 @@ contains
          call read_request(request, model, deck, deck%cards(i), error)
          if (allocated(error)) return
          if (model%steps(step)%procedure == procedure_frequency) then
+            if (any(request%kind == [request_node_print, request_element_print])) then
+               call add_note(model%notes, note_at(model%source, request%place, 'a PRINT card ' &
+                     //'has no effect in a frequency step: /frequency has its numbers, *NODE ' &
+                     //'FILE and *EL FILE record its modes'))
+               cycle
+            end if
             call check_frequency(request, model, deck%cards(i), error)
             if (allocated(error)) return
          end if
@@ -115,12 +121,12 @@ contains
 
       wrong = request%wanted
       select case (request%kind)
-      case (request_node_print, request_node_file)
+      case (request_node_file)
          wrong(quantity_u) = .false.
          if (any(wrong)) call fail_at(error, model%source, card%place, &
                'a frequency step has no velocities, accelerations and forces to record', &
                cure='write U alone')
-      case (request_element_print, request_element_file)
+      case (request_element_file)
          wrong([quantity_s, quantity_e]) = .false.
          if (any(wrong)) call fail_at(error, model%source, card%place, &
                'a frequency step has no plastic strains and energies to record', &

@@ -3,13 +3,15 @@ module step_reader
    use kinds, only: wp
    use errors, only: error_type
    use memory_shortage, only: check_allocation
-   use places, only: source_type, fail_at
+   use places, only: source_type, fail_at, note_at
    use steps, only: step_type, procedure_static, procedure_dynamic, procedure_frequency, &
          solver_mumps
    use model, only: model_type
    use cards, only: deck_type, card_type, get_word, get_name_parameter, get_integer_parameter
-   use cards, only: parameter_place, has_parameter
-   use fields, only: fields_type, only_line, field_place, get_reals, get_integer
+   use cards, only: parameter_index, parameter_place, has_parameter
+   use card_rules, only: usage_of
+   use source_reader, only: add_note
+   use fields, only: fields_type, only_line, field_place, is_given, get_reals, get_real, get_integer
    use condition_reader, only: read_boundaries, read_initial_conditions, read_loads
    use request_reader, only: read_requests
    use load_reader, only: read_distributed, read_base_motions
@@ -80,7 +82,7 @@ contains
    !> *STEP itself and the one procedure card.
    subroutine read_head(step, model, s, deck, error)
       type(step_type), intent(inout) :: step
-      type(model_type), intent(in) :: model
+      type(model_type), intent(inout) :: model   !! gets notes
       integer, intent(in) :: s
       type(deck_type), intent(in) :: deck
       type(error_type), allocatable, intent(out) :: error
@@ -139,7 +141,7 @@ contains
    subroutine read_procedure(step, n, model, deck, card, error)
       type(step_type), intent(inout) :: step
       integer, intent(in) :: n   !! procedure cards of this step so far
-      type(model_type), intent(in) :: model
+      type(model_type), intent(inout) :: model
       type(deck_type), intent(in) :: deck
       type(card_type), intent(in) :: card
       type(error_type), allocatable, intent(out) :: error
@@ -153,7 +155,7 @@ contains
       step%time_place = card%place
       step%direct = has_parameter(card, 'DIRECT')
       step%procedure = procedure_static
-      call read_solver(step, model%source, card, error)
+      call read_solver(step, model, card, error)
       if (allocated(error)) return
       if (card%keyword == 'FREQUENCY') then
          step%procedure = procedure_frequency
@@ -168,27 +170,36 @@ contains
       call read_times(step, deck, card, model%source, error)
    end subroutine read_procedure
 
-   !> SOLVER; modes are found with skylines alone.
-   subroutine read_solver(step, source, card, error)
+   !> SOLVER; modes are found with skylines alone. Instead of a solver of CalculiX one is chosen.
+   subroutine read_solver(step, model, card, error)
       type(step_type), intent(inout) :: step
-      type(source_type), intent(in) :: source
+      type(model_type), intent(inout) :: model
       type(card_type), intent(in) :: card
       type(error_type), allocatable, intent(out) :: error
       character(len=word_length), parameter :: solvers(*) = [character(len=word_length) :: &
             'AUTO', 'SKYLINE', 'MUMPS']
-      integer :: choice
+      character(len=word_length), parameter :: of_calculix(*) = [character(len=word_length) :: &
+            'SPOOLES', 'PASTIX', 'PARDISO', 'TAUCS', 'SGI', 'ITERATIVE SCALING', &
+            'ITERATIVE CHOLESKY']
+      integer :: choice, i
 
-      call get_word(card, 'SOLVER', solvers, choice, source, error)
+      i = parameter_index(card, 'SOLVER')
+      if (i == 0) return
+      step%solver_place = card%parameters(i)%place
+      if (find_word(card%parameters(i)%value, of_calculix) > 0) then
+         call add_note(model%notes, note_at(model%source, step%solver_place, 'SOLVER='// &
+               trim(card%parameters(i)%value)//' is not part of carom: AUTO in its place'))
+         return
+      end if
+      call get_word(card, 'SOLVER', solvers, choice, model%source, error)
       if (allocated(error)) return
-      if (choice == 0) return
       step%solver = choice
-      step%solver_place = parameter_place(card, 'SOLVER')
       if (step%solver == solver_mumps .and. card%keyword == 'FREQUENCY') call fail_at(error, &
-            source, step%solver_place, 'frequencies are not found with MUMPS', &
+            model%source, step%solver_place, 'frequencies are not found with MUMPS', &
             cure='write SOLVER=SKYLINE, or remove SOLVER')
    end subroutine read_solver
 
-   !> The line of *FREQUENCY.
+   !> The line of *FREQUENCY; the range, if given, begins at 0.
    subroutine read_modes(step, deck, card, source, error)
       type(step_type), intent(inout) :: step
       type(deck_type), intent(in) :: deck
@@ -196,14 +207,33 @@ contains
       type(source_type), intent(in) :: source
       type(error_type), allocatable, intent(out) :: error
       type(fields_type) :: fields
+      real(wp) :: lowest
 
-      call only_line(fields, deck, card, 1, source, error)
+      call only_line(fields, deck, card, 3, source, error)
       if (allocated(error)) return
       call get_integer(fields, 1, 'number of modes', step%n_modes, source, error)
       if (allocated(error)) return
       step%time_place = fields%place
-      if (step%n_modes < 1) call fail_at(error, source, field_place(fields, 1), &
-            'the number of modes must be positive', cure='the line is: number of modes')
+      if (step%n_modes < 1) then
+         call fail_at(error, source, field_place(fields, 1), &
+               'the number of modes must be positive', cure='the line is: '//usage_of(card%rule))
+         return
+      end if
+      lowest = 0.0_wp
+      if (is_given(fields, 2)) call get_real(fields, 2, 'lowest frequency', lowest, source, error)
+      if (allocated(error)) return
+      if (abs(lowest) > 0.0_wp) then
+         call fail_at(error, source, field_place(fields, 2), &
+               'modes are found from the lowest on: a range begins at 0', &
+               cure='write 0 or nothing there, and a number of modes that reaches far enough')
+         return
+      end if
+      if (.not. is_given(fields, 3)) return
+      call get_real(fields, 3, 'highest frequency', step%highest_frequency, source, error)
+      if (allocated(error)) return
+      if (.not. step%highest_frequency > 0.0_wp) call fail_at(error, source, &
+            field_place(fields, 3), 'the highest frequency must be positive', &
+            cure='the line is: '//usage_of(card%rule))
    end subroutine read_modes
 
    !> dt, T; only a static step may lack the line, it has 1, 1 then. Without DIRECT also the

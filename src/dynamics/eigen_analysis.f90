@@ -13,7 +13,7 @@ module eigen_analysis
    implicit none
    private
 
-   public :: modes_type, find_modes
+   public :: modes_type, find_modes, keep_modes_up_to
 
    real(wp), parameter :: pi = acos(-1.0_wp)
 
@@ -68,6 +68,21 @@ contains
       end do
       call find_effective_mass(structure, modes)
    end subroutine find_modes
+
+   !> Leaves out the modes above a frequency.
+   subroutine keep_modes_up_to(modes, highest)
+      type(modes_type), intent(inout) :: modes
+      real(wp), intent(in) :: highest               !! cycles per time
+      integer :: n
+
+      n = count(modes%frequency <= highest)
+      modes%n = n
+      modes%eigenvalue = modes%eigenvalue(:n)
+      modes%frequency = modes%frequency(:n)
+      modes%residual = modes%residual(:n)
+      modes%shape = modes%shape(:, :n)
+      modes%effective_mass = modes%effective_mass(:, :n)
+   end subroutine keep_modes_up_to
 
    !> The mode or its opposite, so that its first largest component is positive.
    pure function upright(shape) result(turned)

@@ -4,6 +4,7 @@
 module energy_ledger
    use kinds, only: wp
    use mesh, only: scheme_implicit, scheme_explicit
+   use dof_map, only: follow_constraints
    use structure, only: elastic_force, damping_force, inertia_force, count_resisting
    use structure_energy, only: strain_energy, plastic_work, group_strain_energy, &
          group_kinetic_energy
@@ -17,7 +18,7 @@ module energy_ledger
    private
 
    public :: ledger_type, open_ledger, record_span, record_impact, close_increment
-   public :: take_back_damping, record_works
+   public :: take_back_damping, record_works, contact_moves
    public :: record_friction, record_springs
    public :: group_energies, record_found
 
@@ -79,19 +80,34 @@ contains
       self%balance_error = 0.0_wp
    end subroutine open_ledger
 
-   !> Works over a span of smooth motion, by the trapezoidal rule, which is exact for Newmark's
-   !> beta = 1/4, gamma = 1/2: loads and prescribed motion from outside, damping, contact forces.
-   subroutine record_span(self, system, from, to, contact_from, contact_to)
+   !> Works over a span of smooth motion: of loads and prescribed motion from outside and of damping
+   !> by the trapezoidal rule, which is exact for Newmark's beta = 1/4, gamma = 1/2; of contact
+   !> forces, which begin and end at once, as they change the kinetic energy (`contact_shares`,
+   !> `contact_moves`), but for those of contact springs: like elements these hold what the
+   !> displacements say.
+   subroutine record_span(self, system, from, to, contact_from, contact_to, springs)
       type(ledger_type), intent(inout) :: self
       type(system_type), intent(inout) :: system
       type(state_type), intent(in) :: from, to
       real(wp), intent(in) :: contact_from(:), contact_to(:)   !! (n_freedoms) contact forces
-      real(wp) :: delta_d(size(from%d)), force(size(from%d))
+      logical, intent(in), optional :: springs   !! contact forces are those of springs
+      real(wp), dimension(size(from%d)) :: delta_d, force, shares, pushed_from, pushed_to
+      logical :: by_springs
 
       delta_d = to%d - from%d
       force = load_at(system%loads, size(force), from%t) + load_at(system%loads, size(force), to%t)
       self%external_work = self%external_work + dot_product(delta_d, force)/2.0_wp
-      self%impact_loss = self%impact_loss - dot_product(delta_d, contact_from + contact_to)/2.0_wp
+      pushed_from = contact_from
+      pushed_to = contact_to
+      if (any(abs(contact_from) > 0.0_wp) .or. any(abs(contact_to) > 0.0_wp)) then
+         by_springs = .false.
+         if (present(springs)) by_springs = springs
+         shares = contact_shares(system, by_springs)
+         pushed_from = 2.0_wp*(1.0_wp - shares)*contact_from
+         pushed_to = 2.0_wp*shares*contact_to
+         self%impact_loss = self%impact_loss - dot_product(contact_moves(system, from, to, &
+               by_springs), pushed_from + pushed_to)/2.0_wp
+      end if
       if (.not. system%static) then
          force = 0.0_wp
          call damping_force(system%structure, scheme_implicit, from%v + to%v, force)
@@ -99,8 +115,55 @@ contains
          self%damping = self%damping + dot_product(delta_d, force)/2.0_wp
       end if
       if (size(system%motions%motions) == 0) return
-      call record_reactions(self, system, from, to, contact_from, contact_to)
+      call record_reactions(self, system, from, to, pushed_from, pushed_to)
    end subroutine record_span
+
+   !> Share of the contact force at the end of a span in its mean, by freedoms: Newmark's gamma, as
+   !> the velocities have it; half without inertia.
+   pure function contact_shares(system, springs) result(shares)
+      type(system_type), intent(in) :: system
+      logical, intent(in) :: springs
+      real(wp) :: shares(system%structure%map%n_freedoms)
+
+      shares = 0.5_wp
+      if (system%static .or. springs) return
+      shares = merge(shares, system%newmark%gamma, is_massless(system))
+   end function contact_shares
+
+   !> Way along which contact forces work over a span: h (v0 + v1)/2, so that with the impulse
+   !> h ((1 - gamma) F0 + gamma F1) their work is the change of the kinetic energy, exactly, at all
+   !> beta and gamma. Springs, freedoms without inertia and those with a given motion go by the
+   !> displacements.
+   pure function contact_moves(system, from, to, springs) result(moves)
+      type(system_type), intent(in) :: system
+      type(state_type), intent(in) :: from, to
+      logical, intent(in) :: springs             !! contact forces are those of springs
+      real(wp) :: moves(size(from%d))
+
+      moves = to%d - from%d
+      if (system%static .or. springs) return
+      where (.not. (system%structure%map%prescribed .or. is_massless(system)))
+         moves = (to%t - from%t)/2.0_wp*(from%v + to%v)
+      end where
+      call follow_constraints(system%structure%map, moves)
+   end function contact_moves
+
+   !> Freedoms without mass.
+   pure function is_massless(system) result(massless)
+      type(system_type), intent(in) :: system
+      logical :: massless(system%structure%map%n_freedoms)
+      integer :: f
+
+      massless = .false.
+      if (.not. allocated(system%massless)) return
+      if (.not. any(system%massless)) return
+      associate (map => system%structure%map)
+         do f = 1, map%n_freedoms
+            if (map%id(map%dof(f), map%node(f)) == 0) cycle
+            massless(f) = system%massless(map%id(map%dof(f), map%node(f)))
+         end do
+      end associate
+   end function is_massless
 
    !> Work of the reactions where a freedom is moved. That of the inertia among them is taken from
    !> the change of the velocities: where the velocity of a moved freedom jumps, as at the points of

@@ -7,7 +7,7 @@ module reactions
    implicit none
    private
 
-   public :: reaction_forces, resisting_reactions, impulse_reactions
+   public :: reaction_forces, resisting_reactions, impulse_reactions, reactions_at
 
 contains
 
@@ -46,8 +46,29 @@ contains
       call keep_prescribed(system, reaction)
    end function impulse_reactions
 
+   !> S(d) + C v - f - contact at given freedoms, zero elsewhere: what would hold them.
+   function reactions_at(system, state, contact, held) result(reaction)
+      type(system_type), intent(inout) :: system
+      type(state_type), intent(in) :: state
+      real(wp), intent(in) :: contact(:)         !! (n_freedoms) contact forces
+      logical, intent(in) :: held(:)             !! (n_freedoms)
+      real(wp) :: reaction(size(contact))
+
+      reaction = -force_balance(system, state) - contact
+      call gather_reactions(system, reaction)
+      where (.not. held) reaction = 0.0_wp
+   end function reactions_at
+
    !> What dependent freedoms need goes to their masters; then only prescribed freedoms have any.
    pure subroutine keep_prescribed(system, reaction)
+      type(system_type), intent(in) :: system
+      real(wp), intent(inout) :: reaction(:)     !! (n_freedoms)
+
+      call gather_reactions(system, reaction)
+      reaction = merge(reaction, 0.0_wp, system%structure%map%prescribed)
+   end subroutine keep_prescribed
+
+   pure subroutine gather_reactions(system, reaction)
       type(system_type), intent(in) :: system
       real(wp), intent(inout) :: reaction(:)     !! (n_freedoms)
       integer :: c, i
@@ -59,8 +80,7 @@ contains
                      + map%master_coefficient(i)*reaction(map%dependent(c))
             end do
          end do
-         reaction = merge(reaction, 0.0_wp, map%prescribed)
       end associate
-   end subroutine keep_prescribed
+   end subroutine gather_reactions
 
 end module reactions

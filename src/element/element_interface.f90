@@ -44,6 +44,7 @@ module element_interface
       procedure :: strain_energy
       procedure :: plastic_work
       procedure :: recover
+      procedure :: point_shares
       procedure :: extrapolation
       procedure :: body_load
       procedure :: edge_load
@@ -159,6 +160,15 @@ contains
 
       values = 0.0_wp
    end subroutine recover
+
+   !> Shares of the points in the volume of element e: weights of a mean over it.
+   pure function point_shares(self, e) result(shares)
+      class(element_type), intent(in) :: self
+      integer, intent(in) :: e
+      real(wp) :: shares(self%n_points)
+
+      shares = 1.0_wp/max(1, self%n_points)
+   end function point_shares
 
    !> Matrix that carries values at the points to values at the nodes.
    pure function extrapolation(self) result(matrix)

@@ -43,6 +43,7 @@ module solid
       procedure :: strain_energy
       procedure :: plastic_work
       procedure :: recover
+      procedure :: point_shares
    end type solid_type
 
 contains
@@ -303,6 +304,16 @@ contains
          values(recovered_peeq, p) = self%law%plastic_measure(history(first:last))
       end do
    end subroutine recover
+
+   pure function point_shares(self, e) result(shares)
+      class(solid_type), intent(in) :: self
+      integer, intent(in) :: e
+      real(wp) :: shares(self%n_points)
+
+      associate (volume => self%kinematics%volume(:, self%class(e)))
+         shares = volume/sum(volume)
+      end associate
+   end function point_shares
 
    pure function hourglass_stiffness(self) result(factor)
       class(solid_type), intent(in) :: self

@@ -12,7 +12,7 @@ module constraint_rows
 
    public :: rows_type, row_gaps, row_rates, row_accelerations, row_forces, row_vector
    public :: row_curvature, slip_rates, slip_products, slip_vector, contact_forces
-   public :: slip_increments, wall_work, may_hit, sticks
+   public :: slip_increments, sliding_speeds, wall_work, may_hit, sticks
    public :: gap_size, rate_size, acceleration_size, wall_rates
    public :: law_motion, law_closed, law_penalty, law_overlap
 
@@ -149,15 +149,24 @@ contains
       accelerations = -slip*(2.0_wp*multiply(self%turning, state%v) + self%bend*slip)
    end function row_curvature
 
-   !> T v + s'(t): speed at which the contactor slides on its partner.
+   !> T v + s'(t): speed at which the contactor slides on its partner, with walls as they move just
+   !> after the state's time.
    pure function slip_rates(self, state) result(rates)
       type(rows_type), intent(in) :: self
       type(state_type), intent(in) :: state
       real(wp) :: rates(self%n)
 
-      rates = multiply(self%along_tangent, state%v) &
-            + wall_speeds(self, self%sliding_motion, state%t)
+      rates = multiply(self%along_tangent, state%v) + sliding_speeds(self, state%t)
    end function slip_rates
+
+   !> s'(t), the part of slip rates that moving walls have, just after t.
+   pure function sliding_speeds(self, t) result(speeds)
+      type(rows_type), intent(in) :: self
+      real(wp), intent(in) :: t
+      real(wp) :: speeds(self%n)
+
+      speeds = wall_speeds(self, self%sliding_motion, t)
+   end function sliding_speeds
 
    !> T u of all rows.
    pure function slip_products(self, u) result(products)

@@ -13,12 +13,13 @@ module contact_impulses
    use structure_energy, only: strain_energy
    use external_load, only: load_at
    use energy_ledger, only: record_impact
-   use constraint_rows, only: row_gaps, row_rates, row_accelerations, row_curvature, slip_rates, &
-         slip_products, rate_size, gap_size, contact_forces, sticks, law_penalty
+   use constraint_rows, only: row_gaps, row_rates, row_accelerations, row_curvature, &
+         slip_products, rate_size, gap_size, contact_forces, law_penalty
    use impact_scene, only: scene_type, contact_motion_type, note_contact_force, gap_tolerance, &
          merge_gap_tolerance
    use row_compliance, only: compliance_type, mass_compliance, pushed, join_rates, split_forces
    use rough_rows, only: solve_rows
+   use slip_state, only: slip_senses, sliding_senses, mark_sticking
    use contact_room, only: no_room
    use impulse_account, only: book_impulse, book_reactions, dependent_impulses
    implicit none
@@ -29,8 +30,6 @@ module contact_impulses
 
    !> Opening rates below this part of the speeds are round-off.
    real(wp), parameter :: thrown_tolerance = 1.0e-9_wp
-   !> So is slip below this part of the largest speed.
-   real(wp), parameter :: rest_tolerance = 1.0e-12_wp
    !> Gaps of weighted rows jump when parts of a surface come to face each other, or cease to.
    !> One of more than this part of the size has, and is not closed: that would move bodies apart
    !> that did not hit, and give them energy.
@@ -123,32 +122,51 @@ contains
       logical, intent(in) :: held(:)
       type(error_type), allocatable, intent(out) :: error
       type(compliance_type) :: compliance
-      real(wp), allocatable :: q(:), forces(:)
-      integer :: sense(scene%rows%n)
-      logical :: solved
-      integer :: status
+      real(wp), allocatable :: forces(:)
+      integer :: sense(scene%rows%n), sliding(scene%rows%n)
 
       call mass_compliance(scene, held, compliance, error)
       if (allocated(error)) return
       if (compliance%n > 0) then
-         q = join_rates(compliance, row_accelerations(scene%rows, motion%motion%a) &
-               + row_curvature(scene%rows, motion%motion), &
-               slip_products(scene%rows, motion%motion%a))
          sense = slip_senses(scene, motion)
-         allocate (forces(size(q)), stat=status)
-         call check_allocation(status)
-         call solve_rows(compliance%w, q, scene%rows%friction(compliance%rows), &
-               held(compliance%rows), forces, solved, sense(compliance%rows))
-         if (.not. solved) then
-            call dependent_impulses(scene, motion%motion%t, compliance, error)
-            return
+         call find_holding_forces(scene, motion, compliance, sense, forces, error)
+         if (allocated(error)) return
+         sliding = sliding_senses(scene, motion, compliance)
+         if (any(sliding /= 0)) then
+            call find_holding_forces(scene, motion, compliance, sense + sliding, forces, error)
+            if (allocated(error)) return
          end if
-         call split_forces(compliance, forces, motion%lambda, motion%tau)
          motion%motion%a = motion%motion%a + pushed(scene, compliance, forces)
       end if
-      motion%sticking = held .and. sticks(scene%rows, motion%lambda, motion%tau)
+      call mark_sticking(scene, motion, held, compliance)
       call note_contact_force(scene, motion)
    end subroutine add_holding_forces
+
+   !> The forces that hold the rows of a compliance.
+   subroutine find_holding_forces(scene, motion, compliance, sense, forces, error)
+      type(scene_type), intent(in) :: scene
+      type(contact_motion_type), intent(inout) :: motion
+      type(compliance_type), intent(in) :: compliance   !! on the mass
+      integer, intent(in) :: sense(:)            !! (n_rows) of the slip, 0: by the law
+      real(wp), allocatable, intent(out) :: forces(:)
+      type(error_type), allocatable, intent(out) :: error
+      real(wp) :: q(size(compliance%w, 1))
+      logical :: bilateral(compliance%n), solved
+      integer :: status
+
+      q = join_rates(compliance, row_accelerations(scene%rows, motion%motion%a) &
+            + row_curvature(scene%rows, motion%motion), slip_products(scene%rows, motion%motion%a))
+      bilateral = .true.
+      allocate (forces(size(q)), stat=status)
+      call check_allocation(status)
+      call solve_rows(compliance%w, q, scene%rows%friction(compliance%rows), bilateral, forces, &
+            solved, sense(compliance%rows))
+      if (.not. solved) then
+         call dependent_impulses(scene, motion%motion%t, compliance, error)
+         return
+      end if
+      call split_forces(compliance, forces, motion%lambda, motion%tau)
+   end subroutine find_holding_forces
 
    !> Forces of contact springs where they are, stiffness times overlap; their friction as it was,
    !> within its limit now. Nothing in other rows.
@@ -162,20 +180,6 @@ contains
       limit = scene%rows%friction*motion%lambda
       motion%tau = max(-limit, min(limit, motion%tau))
    end subroutine find_spring_forces
-
-   !> Which way rows slide, 0 where they do not.
-   function slip_senses(scene, motion) result(sense)
-      type(scene_type), intent(in) :: scene
-      type(contact_motion_type), intent(in) :: motion
-      integer :: sense(scene%rows%n)
-      real(wp) :: slip(scene%rows%n), limit
-
-      sense = 0
-      if (.not. any(scene%rows%friction > 0.0_wp)) return
-      slip = slip_rates(scene%rows, motion%motion)
-      limit = rest_tolerance*maxval(abs(motion%motion%v))
-      where (abs(slip) > limit .and. .not. motion%sticking) sense = nint(sign(1.0_wp, slip))
-   end function slip_senses
 
    !> Gap rates of touching rows after a span in which the wall's own speed has changed: impulses
    !> that bring them to zero, 0 <= p + I, G v + W p >= 0, complementary. A row takes back no more

@@ -25,6 +25,7 @@ module contact_release
       logical :: at_limit = .false.          !! no more events are allowed
       real(wp), allocatable :: let_go(:)     !! (n_rows) what remained when the row was released
       logical, allocatable :: stubborn(:)    !! (n_rows) held to the end of the step (note_return)
+      logical, allocatable :: returned(:)    !! (n_rows) back at the instant of a release before
       logical, allocatable :: ignored(:)     !! (n_rows) not hit any more in this step
    end type progress_type
 
@@ -197,14 +198,19 @@ contains
       end do
    end subroutine release_rows
 
-   !> A row that comes back at the instant of its release slides on a curved edge and its contact
-   !> force just vanishes: within the error of the step it stays. It is held to the end of the step.
-   pure subroutine note_return(motion, progress)
+   !> A row that comes back at the instant of its release, on a curved edge or, once more, without
+   !> speed, has a contact force that just vanishes: within the error of the step it stays. It is
+   !> held to the end of the step.
+   pure subroutine note_return(motion, slow, progress)
       type(contact_motion_type), intent(in) :: motion
+      logical, intent(in) :: slow(:)             !! (n_rows) that may have come back so
       type(progress_type), intent(inout) :: progress
+      logical :: back(size(slow))
 
-      progress%stubborn = progress%stubborn .or. (motion%touching .and. &
-            abs(progress%let_go - progress%remaining) <= merge_time_tolerance*progress%dt)
+      back = slow .and. motion%touching .and. &
+            abs(progress%let_go - progress%remaining) <= merge_time_tolerance*progress%dt
+      progress%stubborn = progress%stubborn .or. (back .and. progress%returned)
+      progress%returned = progress%returned .or. back
    end subroutine note_return
 
 end module contact_release

@@ -5,17 +5,17 @@ module impact_scene
    use state_archive, only: archive_type
    use memory_shortage, only: check_allocation
    use text, only: to_text
-   use surfaces, only: beta_automatic, method_transformation
+   use surfaces, only: beta_automatic, method_transformation, method_penalty
    use contact_motion, only: contact_motion_type, new_contact_motion, copy_contact_motion, &
          exchange_motions
    use equation_of_motion, only: system_type
    use energy_ledger, only: ledger_type, record_span, take_back_damping, record_impact, &
-         record_friction, record_springs
+         record_friction, record_springs, contact_moves
    use explicit_motion, only: explicit_motion_type
    use compliance_store, only: compliance_store_type, complex_columns_type
    use contact_geometry, only: contact_geometry_type
    use constraint_rows, only: rows_type, row_rates, row_accelerations, row_curvature, &
-         acceleration_size, contact_forces, slip_increments, wall_work, law_penalty
+         acceleration_size, contact_forces, slip_increments, slip_products, wall_work, law_penalty
    implicit none
    private
 
@@ -247,24 +247,33 @@ contains
       type(scene_type), intent(inout) :: scene
       type(contact_motion_type), intent(in) :: from
       type(contact_motion_type), intent(inout) :: to
-      real(wp) :: slip(scene%rows%n), force(size(from%force)), work
+      real(wp), dimension(scene%rows%n) :: slip, share, tau
+      real(wp) :: force(size(from%force)), work
+      logical :: springs
 
+      springs = scene%settings%method == method_penalty
       force = from%force
       if (allocated(from%carried)) force = force + from%carried
-      call record_span(scene%ledger, scene%system, from%motion, to%motion, force, to%force)
+      call record_span(scene%ledger, scene%system, from%motion, to%motion, force, to%force, &
+            springs)
       call take_back_damping(scene%ledger, from%motion, to%motion, from%left_out)
       scene%impulse = scene%impulse + (to%motion%t - from%motion%t)*(from%lambda &
             + scene%system%newmark%gamma*(to%lambda - from%lambda))
+      share = scene%system%newmark%gamma
+      where (scene%rows%massless .or. scene%system%static .or. springs) share = 0.5_wp
+      tau = from%tau + share*(to%tau - from%tau)
       if (any(scene%rows%amplitude > 0)) then
-         work = wall_work(scene%rows, from%motion, to%motion, (from%lambda + to%lambda)/2.0_wp, &
-               (from%tau + to%tau)/2.0_wp)
+         work = wall_work(scene%rows, from%motion, to%motion, &
+               from%lambda + share*(to%lambda - from%lambda), tau)
          call record_impact(scene%ledger, work, work)
       end if
       call record_springs(scene%ledger, [spring_energy(scene, to%lambda), &
             spring_energy(scene, to%tau)])
       if (.not. any(scene%rows%friction > 0.0_wp)) return
       slip = slip_increments(scene%rows, from%motion, to%motion)
-      call record_friction(scene%ledger, -dot_product(slip, from%tau + to%tau)/2.0_wp)
+      call record_friction(scene%ledger, -dot_product(tau, slip + slip_products(scene%rows, &
+            contact_moves(scene%system, from%motion, to%motion, springs) &
+            - (to%motion%d - from%motion%d))))
       where (to%lambda > 0.0_wp) to%slip = to%slip + abs(slip)
    end subroutine accept_span
 

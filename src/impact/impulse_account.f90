@@ -56,7 +56,7 @@ contains
       call record_impact(scene%ledger, 0.0_wp, dot_product(reaction, motion%motion%v))
    end subroutine book_reactions
 
-   !> Impulses that do not exist, or are not the only ones.
+   !> Impulses or forces that do not exist, or are not the only ones.
    subroutine dependent_impulses(scene, t, compliance, error)
       type(scene_type), intent(in) :: scene
       real(wp), intent(in) :: t
@@ -73,10 +73,20 @@ contains
       end do
       if (compliance%n > most_named) nodes = nodes//', ...'
       call new_error(error, status_numerical, &
-            'an impact at time '//to_text(t)//' has no answer: of the contact rows of node '// &
+            'contact at time '//to_text(t)//' has no answer: of the contact rows of node '// &
             nodes//' one has no mass behind it, or they depend on each other'//new_line('a')// &
             '  cure: give every contact node a mass, let none touch the same wall twice, '// &
-            'and hold none along the normal')
+            'and hold none along the normal'//both_passes(scene))
    end subroutine dependent_impulses
+
+   !> What else to do where rows of both passes of a pair with friction are there.
+   function both_passes(scene) result(text)
+      type(scene_type), intent(in) :: scene
+      character(len=:), allocatable :: text
+
+      text = ''
+      if (any(scene%rows%friction > 0.0_wp) .and. scene%rows%moving) text = '; with friction and ' &
+            //'PASSES=2, take one pass, a smaller increment or METHOD=LAGRANGE'
+   end function both_passes
 
 end module impulse_account

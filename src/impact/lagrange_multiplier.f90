@@ -42,6 +42,7 @@ module lagrange_multiplier
    use rough_rows, only: solve_rows
    use contact_impulses, only: carry_acceleration, project_touching, follow_wall
    use impulse_account, only: book_impulse, book_friction, book_reactions, dependent_impulses
+   use slip_state, only: review_slip
    use row_following, only: rows_ahead, rows_here, settle_rows
    use first_contacts, only: find_first_contacts
    use constrained_step, only: advance_smoothly
@@ -95,7 +96,6 @@ contains
             motion%touching)
       call accept_span(scene, motion, next)
       if (allocated(next%carried)) deallocate (next%carried)
-      if (.not. scene%system%newmark%beta > 0.0_wp) call book_rates(scene, motion, next)
       call let_go(scene, next, opening_rows(scene, motion, next))
       if (any(closed)) then
          call close_rows(scene, motion, next, closed, dt, error)
@@ -144,21 +144,6 @@ contains
       closed = lambda > 0.0_wp .and. .not. motion%touching
       call note_contact_force(scene, motion)
    end subroutine close_ahead
-
-   !> At beta = 0 multipliers work along the mean velocity of a step, not along its displacement as
-   !> has been booked: that differs by all the velocity that is stopped.
-   subroutine book_rates(scene, from, to)
-      type(scene_type), intent(inout) :: scene
-      type(contact_motion_type), intent(in) :: from, to
-      real(wp), dimension(scene%rows%n) :: lambda, moved, by_rates
-
-      lambda = from%lambda + to%lambda
-      if (.not. any(abs(lambda) > 0.0_wp)) return
-      moved = row_gaps(scene%rows, to%motion) - row_gaps(scene%rows, from%motion)
-      by_rates = (to%motion%t - from%motion%t)/2.0_wp &
-            *(row_rates(scene%rows, from%motion) + row_rates(scene%rows, to%motion))
-      call record_impact(scene%ledger, dot_product(lambda, moved - by_rates)/2.0_wp, 0.0_wp)
-   end subroutine book_rates
 
    !> Complementary forces of a compliance and the motion they give.
    subroutine solve_marked(scene, compliance, q, lambda, motion, solved)
@@ -289,22 +274,21 @@ contains
       end do
    end subroutine note_impacts
 
-   !> Rows that have stayed closed, on walls whose speed may have changed. One that has come to
-   !> stick has no slip acceleration any more.
+   !> Rows that have stayed closed, on walls whose speed may have changed.
    subroutine follow_rows(scene, from, to, dt, error)
       type(scene_type), intent(inout) :: scene
       type(contact_motion_type), intent(in) :: from
       type(contact_motion_type), intent(inout) :: to
       real(wp), intent(in) :: dt
       type(error_type), allocatable, intent(out) :: error
-      logical :: thrown(scene%rows%n), stuck(scene%rows%n)
+      logical :: thrown(scene%rows%n), anew
 
       to%fresh = .false.
       call follow_wall(scene, to, dt*(from%lambda + to%lambda)/2.0_wp, dt, thrown, error)
       if (allocated(error)) return
       call let_go(scene, to, thrown)
-      stuck = to%touching .and. to%sticking .and. .not. from%sticking
-      if (.not. any(thrown .or. stuck)) return
+      call review_slip(scene, from, to, anew, error)
+      if (allocated(error) .or. .not. (anew .or. any(thrown))) return
       call carry_acceleration(scene, to, error)
       to%fresh = .true.
    end subroutine follow_rows

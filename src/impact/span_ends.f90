@@ -2,11 +2,12 @@
 module span_ends
    use kinds, only: wp
    use errors, only: error_type
-   use constraint_rows, only: rate_size, may_hit
+   use constraint_rows, only: rate_size
    use impact_scene, only: scene_type, contact_motion_type, rate_tolerance
    use contact_release, only: progress_type, release_rows
    use contact_impulses, only: restart_acceleration, project_touching, follow_wall
    use impact_time, only: span_type
+   use slip_state, only: review_slip
    implicit none
    private
 
@@ -39,15 +40,15 @@ contains
       type(progress_type), intent(inout) :: progress
       type(error_type), allocatable, intent(out) :: error
       real(wp) :: span_impulse(scene%rows%n)
-      logical, dimension(scene%rows%n) :: thrown, stuck
+      logical :: thrown(scene%rows%n), anew
 
       span_impulse = (motion%motion%t - from%motion%t)*(from%lambda + motion%lambda)/2.0_wp
-      stuck = motion%sticking .and. .not. from%sticking .and. may_hit(scene%rows)
       call follow_wall(scene, motion, span_impulse, progress%dt, thrown, error)
       if (allocated(error)) return
       if (any(thrown)) call release_rows(scene, motion, thrown, progress)
-      if (any(thrown .or. (stuck .and. motion%touching))) then
-         ! a row that has come to stick has no slip acceleration any more
+      call review_slip(scene, from, motion, anew, error)
+      if (allocated(error)) return
+      if (anew .or. any(thrown)) then
          call restart_acceleration(scene, motion, error)
          if (allocated(error)) return
          motion%fresh = .true.

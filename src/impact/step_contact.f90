@@ -7,7 +7,8 @@ module step_contact
    use text, only: to_text
    use rough_rows, only: solve_rows
    use constraint_rows, only: row_gaps, row_accelerations, slip_products, slip_rates, &
-         slip_increments, sticks, gap_size, law_motion, law_closed, law_penalty, law_overlap
+         slip_increments, sliding_speeds, sticks, gap_size, law_motion, law_closed, law_penalty, &
+         law_overlap
    use impact_scene, only: scene_type, contact_motion_type, gap_tolerance
    use row_compliance, only: compliance_type, find_compliance, pushed, join_rates, split_forces
    use contact_room, only: no_room, room_tolerance
@@ -190,7 +191,8 @@ contains
       type(contact_motion_type), intent(in) :: from, to
       real(wp), intent(in) :: delta(:)
       real(wp) :: motion(scene%rows%n)
-      logical :: by_slip(scene%rows%n)
+      real(wp) :: jump(scene%rows%n)
+      logical, dimension(scene%rows%n) :: by_slip, changed
 
       motion = 0.0_wp
       if (.not. any(scene%rows%friction > 0.0_wp)) return
@@ -199,12 +201,32 @@ contains
       where (scene%rows%law == law_penalty) motion = motion - from%tau/scene%rows%stiffness
       motion = motion/step%to_displacement
       if (.not. step%static) then
-         where (.not. by_slip) motion = slip_rates(scene%rows, to%motion)/step%to_velocity
-         where (to%touching .and. from%sticking .and. .not. (by_slip .or. scene%rows%law == &
-               law_overlap)) motion = slip_products(scene%rows, to%motion%a)
+         call find_wall_changes(scene, from%motion%t, to%motion%t, changed, jump)
+         where (.not. by_slip) motion = (slip_rates(scene%rows, to%motion) - jump)/step%to_velocity
+         where (to%touching .and. from%sticking .and. .not. (by_slip .or. changed .or. &
+               scene%rows%law == law_overlap)) motion = slip_products(scene%rows, to%motion%a)
       end if
       motion = motion + slip_products(scene%rows, delta)
    end function slip_motion
+
+   !> What moving walls do to slip rates in a step: whether they change inside it, and by how much
+   !> they jump at its end, which is not the step's to answer: what touches is looked at after it.
+   pure subroutine find_wall_changes(scene, t_start, t_end, changed, jump)
+      type(scene_type), intent(in) :: scene
+      real(wp), intent(in) :: t_start, t_end
+      logical, intent(out) :: changed(:)         !! (n_rows)
+      real(wp), intent(out) :: jump(:)           !! (n_rows)
+      real(wp), parameter :: near_end = 1.0e-6_wp   !! parts of the step
+      real(wp) :: late(size(jump))
+
+      changed = .false.
+      jump = 0.0_wp
+      if (.not. any(scene%rows%amplitude > 0)) return
+      late = sliding_speeds(scene%rows, t_end - near_end*(t_end - t_start))
+      changed = abs(late - sliding_speeds(scene%rows, t_start)) > 0.0_wp
+      jump = sliding_speeds(scene%rows, t_end) - late
+      where (scene%rows%law == law_overlap) jump = 0.0_wp
+   end subroutine find_wall_changes
 
    !> The error of rows that have no answer.
    subroutine dependent_rows(scene, t, error)

@@ -80,9 +80,10 @@ contains
       progress%beta = scene%system%newmark%beta
       allocate (progress%let_go(scene%rows%n), source=-dt, stat=status)
       call check_allocation(status)
-      allocate (progress%stubborn(scene%rows%n), progress%ignored(scene%rows%n), source=.false., &
-            stat=status)
+      allocate (progress%stubborn(scene%rows%n), progress%ignored(scene%rows%n), &
+            progress%returned(scene%rows%n), source=.false., stat=status)
       call check_allocation(status)
+      if (scene%rows%moving) progress%returned = .true.
       call look_here(scene, motion, gaps, rates)
       aim = .true.
       call exchange_motions(scene%spare, next)
@@ -158,7 +159,7 @@ contains
       type(impact_type) :: impact
       type(hits_type) :: all_hits
       real(wp) :: tau
-      logical :: lost
+      logical :: lost, slow(scene%rows%n)
 
       all_hits = hits
       lost = .false.
@@ -174,8 +175,9 @@ contains
       if (allocated(error) .or. lost) return
       progress%n_events = progress%n_events + 1
       call choose_rows(scene, motion, span, all_hits, tau, progress, impact)
+      slow = abs(row_rates(scene%rows, motion%motion)) <= impact%rate_limit
       call apply_impact(scene, motion, impact, error)
-      if (scene%rows%moving) call note_return(motion, progress)
+      call note_return(motion, slow .or. scene%rows%moving, progress)
       motion%fresh = .true.
    end subroutine go_through_impact
 

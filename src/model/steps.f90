@@ -8,7 +8,7 @@ module steps
    implicit none
    private
 
-   public :: step_type, request_type
+   public :: step_type, request_type, is_frame_request
    public :: procedure_static, procedure_dynamic, procedure_frequency
    public :: solver_auto, solver_skyline, solver_mumps
    public :: request_node_print, request_node_file, request_element_print, request_element_file
@@ -78,7 +78,8 @@ module steps
       real(wp) :: dt_min = 0.0_wp                !! automatic increments: the smallest, 0: default
       real(wp) :: dt_max = 0.0_wp                !! the largest, 0: T
       real(wp) :: tolerance = 0.0_wp             !! error asked of a dynamic step, 0: default
-      integer :: n_modes = 0                     !! frequency steps
+      integer :: n_modes = 0                     !! frequency steps: so many modes at most,
+      real(wp) :: highest_frequency = 0.0_wp     !! of frequencies up to this; 0: all
       integer :: restart_frequency = 0           !! increments between states kept, 0: none
       logical :: new_boundaries = .false.        !! OP=NEW: those of earlier steps are dropped
       logical :: new_loads = .false.
@@ -98,5 +99,15 @@ module steps
       type(place_type) :: order_place            !! of ORDER, if given
       type(place_type) :: time_place             !! of the line with dt, T
    end type step_type
+
+contains
+
+   !> Whether a request is one for frames.
+   pure logical function is_frame_request(request)
+      type(request_type), intent(in) :: request
+
+      is_frame_request = any(request%kind == [request_node_file, request_element_file, &
+            request_contact_file])
+   end function is_frame_request
 
 end module steps

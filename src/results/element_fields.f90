@@ -1,5 +1,5 @@
 !> Stress, strain, plastic strain, energy and Mises stress as fields of the grid: in the cells (mean
-!> over the points of an element) and, for solids, at the points of the grid (extrapolated to the
+!> over the volume of an element) and, for solids, at the points of the grid (extrapolated to the
 !> nodes of each element and averaged over the elements that meet there).
 module element_fields
    use kinds, only: wp
@@ -114,7 +114,7 @@ contains
          matrix = group%element%extrapolation()
          do e = 1, size(group%member)
             values = point_values(scene, g, e, snapshot)
-            cells(:, group%member(e)) = sum(values, dim=2)/size(values, 2)
+            cells(:, group%member(e)) = matmul(values, group%element%point_shares(e))
             do i = 1, size(group%ien, 1)
                points(:, group%ien(i, e)) = points(:, group%ien(i, e)) &
                      + matmul(values, matrix(i, :))

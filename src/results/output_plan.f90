@@ -5,7 +5,7 @@ module output_plan
    use model, only: model_type
    use steps, only: request_type, n_quantities, procedure_frequency, request_node_print, &
          request_element_print, request_contact_print, request_energy_print, quantity_cf, &
-         quantity_cdis, quantity_cpress, quantity_cslip, quantity_cstate
+         quantity_cdis, quantity_cpress, quantity_cslip, quantity_cstate, is_frame_request
    implicit none
    private
 
@@ -39,6 +39,9 @@ contains
       self%modes_only = any(model%steps%procedure == procedure_frequency)
       do s = 1, size(model%steps)
          do r = 1, size(model%steps(s)%requests)
+            ! frames of modes have nothing of what other steps ask for
+            if (self%modes_only .and. model%steps(s)%procedure /= procedure_frequency .and. &
+                  is_frame_request(model%steps(s)%requests(r))) cycle
             call add_request(self, model, model%steps(s)%requests(r))
          end do
       end do

@@ -90,7 +90,7 @@ contains
       end do
    end function on_nodes
 
-   !> Stresses and the rest of an element of a group, averaged over its points.
+   !> Stresses and the rest of an element of a group, their means over its volume.
    function element_values(scene, group, e, snapshot) result(values)
       type(scene_type), intent(inout) :: scene
       integer, intent(in) :: group, e
@@ -99,7 +99,7 @@ contains
       real(wp) :: points(n_recovered, scene%system%structure%groups(group)%element%n_points)
 
       points = point_values(scene, group, e, snapshot)
-      values = sum(points, dim=2)/size(points, 2)
+      values = matmul(points, scene%system%structure%groups(group)%element%point_shares(e))
    end function element_values
 
    !> Stresses and the rest at the points of an element of a group.

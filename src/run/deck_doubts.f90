@@ -7,7 +7,7 @@ module deck_doubts
    use mesh, only: is_solid_kind, solid_plane, solid_topology, solid_reduced, plane_stress, &
          tri3, quad4
    use element_types, only: kind_name
-   use steps, only: procedure_frequency
+   use steps, only: procedure_frequency, is_frame_request
    use model, only: model_type
    use continuum_bodies, only: body_list_type
    use contact_outlook, only: side_spacing
@@ -35,6 +35,7 @@ contains
 
       call doubt_units(simulation)
       call doubt_output(simulation)
+      call doubt_frames(simulation)
       if (any(is_solid_kind(simulation%model%elements%kind(:simulation%model%elements%n)))) then
          call doubt_elements(simulation)
          call doubt_bending(simulation, bodies)
@@ -61,6 +62,27 @@ contains
                //'and *EL FILE with S for frames, *CONTACT PRINT with CF, CDIS, and *ENERGY PRINT'))
       end associate
    end subroutine doubt_output
+
+   !> Frames of states asked for where the grid holds modes.
+   subroutine doubt_frames(simulation)
+      type(simulation_type), intent(inout) :: simulation
+      integer :: s, r
+
+      associate (steps => simulation%model%steps)
+         if (.not. any(steps%procedure == procedure_frequency)) return
+         do s = 1, size(steps)
+            if (steps(s)%procedure == procedure_frequency) cycle
+            do r = 1, size(steps(s)%requests)
+               if (.not. is_frame_request(steps(s)%requests(r))) cycle
+               call add_remark(simulation, note_at(simulation%model%source, &
+                     steps(s)%requests(r)%place, 'warning: with a *FREQUENCY step all frames ' &
+                     //'are modes: this step records none'//new_line('a')//'  cure: run it in a ' &
+                     //'deck without *FREQUENCY too, or write *NODE PRINT and *EL PRINT'))
+               return
+            end do
+         end do
+      end associate
+   end subroutine doubt_frames
 
    !> Elements that lock near incompressibility: linear triangles always, CPE4 and CAX4 unless their
    !> volumetric strain is averaged or their quadrature is reduced.

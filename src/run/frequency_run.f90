@@ -5,8 +5,9 @@ module frequency_run
    use errors, only: error_type, status_numerical
    use text, only: to_text, plural
    use places, only: fail_at
-   use eigen_analysis, only: modes_type, find_modes
+   use eigen_analysis, only: modes_type, find_modes, keep_modes_up_to
    use effective_matrix, only: mark_implicit
+   use steps, only: step_type
    use result_file, only: result_file_type, write_system
    use mode_recorder, only: record_modes
    use program_version, only: version_text
@@ -55,22 +56,46 @@ contains
             error%status = status_numerical    ! found by computing: the run has begun
             return
          end if
-         call report_modes(modes, step%n_modes, log)
+         call choose_modes(simulation, step, modes, log, error)
+         if (allocated(error)) return
+         call report_modes(modes, log)
          call record_modes(results, simulation%scene, simulation%contact, simulation%motion, &
                modes, error)
       end associate
    end subroutine run_frequency_step
 
+   !> Leaves out the modes above the step's highest frequency. Error: all are.
+   subroutine choose_modes(simulation, step, modes, log, error)
+      type(simulation_type), intent(in) :: simulation
+      type(step_type), intent(in) :: step
+      type(modes_type), intent(inout) :: modes
+      type(log_type), intent(inout) :: log
+      type(error_type), allocatable, intent(out) :: error
+      integer :: n_found
+
+      n_found = modes%n
+      if (n_found < step%n_modes) call remark(log, to_text(step%n_modes) &
+            //' modes were asked for, the model has '//to_text(n_found))
+      if (.not. step%highest_frequency > 0.0_wp) return
+      if (modes%frequency(1) > step%highest_frequency) then
+         call fail_at(error, simulation%model%source, step%time_place, &
+               'the lowest frequency, '//to_text(modes%frequency(1))//', is above the highest ' &
+               //'one asked for', 'write a higher one, or the number of modes alone')
+         error%status = status_numerical
+         return
+      end if
+      call keep_modes_up_to(modes, step%highest_frequency)
+      if (modes%n < n_found) call say(log, '  '//plural(modes%n, 'mode')//' of '// &
+            to_text(n_found)//' up to the frequency '//to_text(step%highest_frequency))
+   end subroutine choose_modes
+
    !> The table of modes, effective masses in percent of what can move.
-   subroutine report_modes(modes, n_wanted, log)
+   subroutine report_modes(modes, log)
       type(modes_type), intent(in) :: modes
-      integer, intent(in) :: n_wanted
       type(log_type), intent(inout) :: log
       character(len=80) :: line
       integer :: i
 
-      if (modes%n < n_wanted) call remark(log, to_text(n_wanted) &
-            //' modes were asked for, the model has '//to_text(modes%n))
       call say(log, '  '//plural(modes%n, 'mode')//' by '//trim(merge('condensation    ', &
             'Lanczos'' method ', modes%condensed))//', shift '//to_text(modes%shift, 3) &
             //', '//plural(modes%n_factorizations, 'factorization')//', largest residual ' &

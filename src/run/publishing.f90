@@ -12,10 +12,12 @@ module publishing
    implicit none
    private
 
-   public :: publishing_type, start_publishing, was_slow_to_start, is_due, publish_now
+   public :: publishing_type, start_publishing, was_slow_to_start, is_due, is_affordable, &
+         publish_now
 
    !> When the last publication was, and what it took.
    type :: publishing_type
+      real(wp) :: began = 0.0_wp                 !! when the run did
       real(wp) :: last = 0.0_wp
       real(wp) :: price = 0.0_wp                 !! seconds
    end type publishing_type
@@ -33,7 +35,8 @@ contains
    subroutine start_publishing(self)
       type(publishing_type), intent(out) :: self
 
-      self%last = seconds_now()
+      self%began = seconds_now()
+      self%last = self%began
    end subroutine start_publishing
 
    !> Whether so much time has passed before the first increment that its state is worth a copy.
@@ -57,25 +60,38 @@ contains
       due = seconds_now() - self%last >= max(wait, share*self%price)
    end function is_due
 
-   !> Publishes all results and brings the log to its file.
+   !> Whether something that takes so many seconds in all takes no more of the run so far than
+   !> publications may.
+   function is_affordable(self, seconds) result(affordable)
+      type(publishing_type), intent(in) :: self
+      real(wp), intent(in) :: seconds
+      logical :: affordable
+
+      affordable = share*seconds <= seconds_now() - self%began
+   end function is_affordable
+
+   !> Brings the log to its file and publishes all results. The log goes first: whatever ends the
+   !> run, status lines up to the state that others see are there.
    subroutine publish_now(self, results, log, cost, error, began)
       type(publishing_type), intent(inout) :: self
       type(result_file_type), intent(inout) :: results
-      type(log_type), intent(in) :: log
+      type(log_type), intent(inout) :: log
       type(cost_type), intent(inout) :: cost
       type(error_type), allocatable, intent(out) :: error   !! status_file
       real(wp), intent(in), optional :: began    !! when what is published was begun to be made
+      type(error_type), allocatable :: log_error
       real(wp) :: start
       integer :: outer
 
       call enter(cost, phase_output, outer, .true.)
       start = seconds_now()
       if (present(began)) start = began
+      call check_log(log, log_error)
       call publish_results(results, error)
       self%last = seconds_now()
       self%price = self%last - start
       call leave(cost, outer)
-      if (.not. allocated(error)) call check_log(log, error)
+      if (.not. allocated(error) .and. allocated(log_error)) call move_alloc(log_error, error)
    end subroutine publish_now
 
 end module publishing

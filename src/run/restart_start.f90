@@ -3,7 +3,7 @@ module restart_start
    use kinds, only: wp
    use errors, only: error_type, new_error, status_deck, status_file
    use text, only: to_text
-   use file_calls, only: file_facts_type, look_at, is_same
+   use file_calls, only: file_facts_type, look_at, is_regular, is_same
    use part_file, only: part_file_type, fill_part, discard
    use state_archive, only: archive_type
    use memory_shortage, only: check_allocation
@@ -63,7 +63,10 @@ contains
       self%definitions = command%definitions
       self%facts = look_at(self%path)
       self%same_file = is_same(self%facts, look_at(command%output))
-      call reader%open(self%path, error)
+      if (self%facts%exists .and. .not. is_regular(self%facts)) call new_error(error, status_file, &
+            'cannot read '''//self%path//''': it is a directory, pipe or device'//nl &
+            //'  cure: name the result file of the run to go on with')
+      if (.not. allocated(error)) call reader%open(self%path, error)
       if (allocated(error)) return
       call read_state(reader, self%path, self%archive, error)
       if (.not. allocated(error)) call read_old_deck(reader, self%path, old, error)

@@ -3,6 +3,7 @@ module run_output
    use kinds, only: wp, int64
    use errors, only: error_type
    use cost_account, only: cost_type
+   use state_archive, only: archive_type
    use result_file, only: result_file_type
    use run_log, only: log_type
    use step_tally, only: tally_type
@@ -14,7 +15,15 @@ module run_output
    implicit none
    private
 
-   public :: output_type, publish_after_start, publish_now_and_then
+   public :: output_type, aside_type, publish_after_start, publish_now_and_then
+
+   !> The state at the end of a step, where it has been put off: it is written if an error ends the
+   !> run before another state is.
+   type :: aside_type
+      type(archive_type), allocatable :: archive
+      real(wp) :: price = 0.0_wp                 !! seconds that the last one took
+      real(wp) :: spent = 0.0_wp                 !! seconds for all of them
+   end type aside_type
 
    !> What a run writes to, and what it listens to.
    type :: output_type
@@ -28,6 +37,7 @@ module run_output
       type(publishing_type) :: publishing
       type(watch_type) :: watch
       logical :: state_due = .false.             !! *RESTART asks for the state of this increment
+      type(aside_type) :: aside
       integer(int64) :: iterations = 0           !! at the end of the last increment
    end type output_type
 

@@ -14,6 +14,7 @@ module run_state
    use kept_solutions, only: kept_solutions_type, note_kept, drop_kept, make_again
    use scene_setup, only: simulation_type, begin_step
    use course, only: course_type
+   use state_structure, only: pass_structure
    implicit none
    private
 
@@ -31,9 +32,11 @@ contains
       type(course_type), intent(inout) :: course           !! as it was
       type(archive_type), intent(out) :: archive
       type(kept_solutions_type) :: kept
+      type(error_type), allocatable :: error
       integer :: n
 
       archive%reading = .false.
+      call pass_structure(simulation, course%step, archive, error)
       call note_kept(kept, simulation%scene)
       call pass_course(simulation, course, archive)
       call pass_all(simulation, kept, archive)
@@ -62,6 +65,10 @@ contains
       call check_archive(archive, error)
       if (allocated(error)) return
       call check_place(simulation, course, error)
+      if (allocated(error)) return
+      call pass_structure(simulation, course%step, archive, error)
+      if (allocated(error)) return
+      call check_archive(archive, error)
       if (allocated(error)) return
       call begin_again(simulation, course%step, error)
       if (allocated(error)) return
@@ -123,6 +130,7 @@ contains
       call archive%leave()
       call archive%enter('conditions')
       call simulation%scene%system%motions%pass_state(archive)
+      call simulation%scene%system%loads%pass_state(archive)
       call archive%leave()
       call simulation%scene%pass_state(archive)
       call archive%enter('kept')

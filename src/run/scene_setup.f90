@@ -11,7 +11,7 @@ module scene_setup
    use histories, only: boundary_type, nodal_value_type, motion_acceleration
    use structure, only: structure_type, new_structure, diagonal_mass, inertia_force
    use equation_order, only: ordering_type, order_equations
-   use external_load, only: begin_loads
+   use external_load, only: begin_loads, add_reactions
    use prescribed_motion, only: begin_motions, start_motions, prescribed_freedoms
    use equation_of_motion, only: system_type, impose
    use solver_setup, only: begin_matrices
@@ -193,9 +193,11 @@ contains
       type(simulation_type), intent(inout) :: self
       integer, intent(in) :: i_step
       type(error_type), allocatable, intent(out) :: error
+      logical, allocatable :: held_before(:)
       real(wp) :: t
 
       t = self%motion%motion%t
+      if (allocated(self%held)) held_before = self%held
       call check_procedures(self, i_step, error)
       if (allocated(error)) return
       call check_increments(self, i_step, error)
@@ -216,6 +218,10 @@ contains
          call find_massless(system)
          self%scene%explicit%ready = .false.
          call begin_loads(system%loads, system%structure, self%model, i_step, t)
+         if (step%procedure == procedure_static .and. allocated(held_before)) then
+            if (any(held_before .and. .not. self%held)) call add_reactions(system%loads, &
+                  size(self%held), step%duration, t)
+         end if
          if (system%static) return
          ! the deck's initial velocities wait for the first dynamic step
          if (all(self%model%steps(:i_step - 1)%procedure == procedure_static)) call put_values( &

@@ -81,6 +81,12 @@ def check_completion(program, commands, scratch):
     expect(cards == {'contact'}, f'cards behind help: {cards}')
     cards = completed(folder, str(program), 'help', 'contact', '')
     expect(cards == {'file', 'output', 'pair', 'print'}, f'their second words: {cards}')
+    for words in (('CONTACT', 'pair', ''), ('a/b', ''), ('[', ''), ('.*', '')):
+        cards = completed(folder, str(program), 'help', *words)
+        expect(cards == set(), f'nothing behind help {" ".join(words)}: {cards}')
+    for words in (('dt', '='), ('dt', '=', '0')):
+        offered = completed(folder, 'carom', 'run', 'b.inp', '--define', *words)
+        expect(offered == set(), f'no deck as the value of --define {"".join(words)}: {offered}')
     expect('1' in completed(folder, 'carom', 'run', 'b.inp', '--threads', ''), 'threads')
     expect(completed(folder, 'carom', 'run', 'b.inp', '--time-limit', '') == set(), 'no file as a time')
 

@@ -171,6 +171,12 @@ HISTORY = (('STATIC, DIRECT', '0.1, 0.35', '*CLOAD\n3, 1, 6\n'),
             '*BOUNDARY, OP=NEW, TYPE=ACCELERATION\n1, 1, 1, 2\n*INITIAL CONDITIONS, TYPE=VELOCITY\n3, 1, 1\n'))
 
 
+LET_GO = (('STATIC, DIRECT', '0.1, 0.3', '*BOUNDARY\n3, 1, 1, -0.04\n*CLOAD\n2, 1, 3\n'),
+          ('STATIC, DIRECT', '0.1, 0.5', '*BOUNDARY, OP=NEW\n1, 1\n*CLOAD, OP=NEW\n3, 1, 1\n'),
+          ('STATIC', '0.1, 0.3', '*CLOAD, OP=NEW\n'),
+          ('DYNAMIC, DIRECT', '0.02, 0.1', ''))
+
+
 def steps(history):
     return ''.join(f'*STEP\n*{procedure}\n{times}\n{cards}*NODE PRINT\nU, V, A\n*ENERGY PRINT\n*END STEP\n'
                    for procedure, times, cards in history)
@@ -192,6 +198,7 @@ def step_cases():
     yield 'five steps, Lagrange', chain(direct, ', METHOD=LAGRANGE'), 12, 0, {}
     yield 'five steps, fictitious force', chain(direct, ', METHOD=FICTITIOUS FORCE, RESTITUTION=0.5'), 12, 0, {}
     yield 'five steps, EVENTS=ANCHOR', chain(direct, ', EVENTS=ANCHOR, RESTITUTION=0.4', False), ALL, 0, {}
+    yield 'loads and a support let go at rest', chain(LET_GO), ALL, 0, {}
     deck = blocks(more=PLASTIC, friction=0.4, gap=0.0, speed=(0.0, 0.0))
     upper = [deck.node('top', 12 + k) for k in range(4)]
     static = [('STATIC', '0.02, 1, 1e-6, 0.1', '*BOUNDARY\n' + ''.join(

@@ -6,6 +6,7 @@ import io
 import numpy as np
 from carom_case import INPUT, run_deck, scratch_folder      # finds the scripts too
 import mesh_from_gmsh
+from carom_results import Result
 from verify_meshes import REST, beside, falls, refused, ring
 
 GEO = INPUT / 'from_gmsh' / 'ring.geo'
@@ -84,7 +85,10 @@ def made(checks, what, *words, status=0, says=''):
     path = scratch_folder() / 'mesh.inc'
     text = io.StringIO()
     with contextlib.redirect_stdout(text), contextlib.redirect_stderr(text):
-        ended = mesh_from_gmsh.main([*map(str, words), '-o', str(path)])
+        try:
+            ended = mesh_from_gmsh.main([*map(str, words), '-o', str(path)])
+        except SystemExit as end:    # of the command line
+            ended = end.code
     good = ended == status and says in text.getvalue()
     checks.true(good, f'{what}: status {ended}, says {says!r}' + (not good) * text.getvalue())
     return path
@@ -112,6 +116,12 @@ def bodies(checks):
             double = len(x) - len(np.unique(np.round(x, 9), axis=0))
             checks.true(sides > 0 and sides % 2 == 0 and double == sides - 1,
                         f'{name}: {sides} sides on both faces, {double} nodes doubled')
+    for words, size in (('0.05', '0.0125'), ('0.05 --order 2', '0.0125'), ('0.2 --size 0.3', '0.05')):
+        made(checks, f'a crack of {words}', 'plate', '--crack', *words.split(), status=1,
+             says=f'--size {size} or less')
+    made(checks, 'a short crack', 'plate', '--crack', 0.2, '--size', 0.05, says='SURFACE PLATE_CRACK: 8 sides')
+    for words in (['--scale', 'nan'], ['--size', 'inf'], ['--at', '0', 'nan'], ['--crack', 'nan']):
+        made(checks, f'{words}', 'plate', *words, status=2, says='no finite number')
     path = made(checks, 'bolt', 'bolt', '--type', 'CAX', '--order', 2, '--size', 0.5,
                 says='SURFACE BOLT_TIP')
     checks.true('TYPE=CAX6' in path.read_text(), 'bolt: axisymmetric elements')
@@ -150,6 +160,24 @@ def files(checks, gmsh, turned):
     made(checks, 'an unknown body', 'sphere', status=1, says='neither a body')
 
 
+def names(checks, turned):
+    """Groups of any letters: a deck finds them under their own names."""
+    geo = turned.with_name('names.geo')
+    text = turned.read_text()
+    geo.write_text(text.replace('"part"', '"größe, é"').replace('"bottom"', '"Straße ½"'))
+    path = made(checks, 'groups of any letters', geo, says='SURFACE STRAßE_½')
+    rest = REST.replace('*SURFACE, NAME=skin\n{curve}\n', '').replace('skin,', 'straße_½,')
+    deck = f'*INCLUDE, INPUT={path}\n' + rest.format(part='größe_é', elements='', floor=-0.002)
+    with Result(run_deck(deck).path) as result:
+        force = result.contact('stra ße_½-floor').CF2
+        checks.true(force.max() > 0 and result.contacts == ['STRAßE_½-FLOOR'],
+                    f'a deck names groups of any letters: force {force.max():.3g}')
+
+
+    geo.write_text(text.replace('"part"', '"a/b"').replace('"bottom"', '"A b"'))
+    made(checks, 'names that are one in a deck', geo, status=1, says="'A b' and 'a/b', are both 'A_B'")
+
+
 def check(checks, gmsh):
     """All of it; `gmsh` is the module."""
     turned = written(checks, gmsh)
@@ -162,3 +190,4 @@ def check(checks, gmsh):
     ring(checks, deck, 'the ring meshed anew', 45)
     bodies(checks)
     files(checks, gmsh, turned)
+    names(checks, turned)

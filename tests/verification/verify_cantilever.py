@@ -128,4 +128,17 @@ checks.true(signs == [0, 1, 2], f'nodes of the bending modes: {signs}')
 masses = run['frequency/effective_mass']
 checks.true(masses.min() >= 0, f'effective masses {masses.shape}')
 checks.at_most(float(np.max(run['frequency/residual'])), 1e-8, 'residuals of the modes')
+
+# behind a static step with frames, up to the third frequency
+both = text.replace('*NODE FILE\nU\n', '*NODE FILE\nU, RF\n') + MODES.replace(
+    '\n4\n', f'\n4, 0, {1.0001 * found[2]:.6g}\n')
+run = run_deck(both)
+checks.close(run['frequency/frequency'], found[:3], 1e-9 * found[2], 'modes up to a frequency')
+checks.true(len(run['VTKHDF/PointData/U']) == 3 * len(mesh.x), 'a frame for each mode, no other')
+checks.true('RF' not in run.file['VTKHDF/PointData'], 'no field of the static step in them')
+checks.true('with a *FREQUENCY step all frames are modes' in run.path.with_suffix('.log').read_text(),
+            'a warning that the static step has no frames')
+run = run_deck(modes.replace('\n4\n', f'\n4, 0, {0.5 * found[0]:.6g}\n'), expect_status=4)
+checks.true('the lowest frequency' in run.text and 'is above the highest' in run.text,
+            'no mode up to a frequency is an error')
 checks.finish()

@@ -15,7 +15,7 @@ from result_decks import BARE, STRIP
 
 from carom_results import Result            # noqa: E402  (from scripts, where carom_case looks)
 from carom_script import ScriptError        # noqa: E402
-from carom_tables import Computed, envelope, minmax   # noqa: E402
+from carom_tables import Computed, Table, envelope, minmax, natural_key   # noqa: E402
 
 CHECKS = Checks()
 
@@ -54,6 +54,14 @@ def read_columns(run, result):
     CHECKS.true(result.energy['kinetic'].description == 'kinetic energy', 'description')
 
 
+def names():
+    """Names of any letters and figures are sorted; only 0 to 9 count as numbers."""
+    odd = ['node_10/U1', 'gap²/CF1', 'node_2/U1', 'gap①', 'gap٣', 'gap 2', 'node_2/U2']
+    found = sorted(odd, key=natural_key)
+    CHECKS.true(found.index('node_2/U1') < found.index('node_2/U2') < found.index('node_10/U1'),
+                f'in natural order: {found}')
+
+
 def read_slices(result):
     """Slices, blocks, computed columns, extremes, envelopes."""
     column = result.node(3)['U1']
@@ -89,6 +97,13 @@ def read_events(run, result):
     CHECKS.at_least(len(rows), 2, 'events')
     same([row.impulse for row in rows], run['events/impulse'], 'impulses row by row')
     CHECKS.true(rows[0].kind == 'impact' and rows[0].pair == 'FRONT-WALL', 'kind and pair are text')
+    CHECKS.true(events[0] == rows[0] and events[np.int64(-1)] == rows[-1] and events[1:3] == rows[1:3]
+                and events[::-1] == rows[::-1], 'events by their numbers')
+    try:
+        events[len(rows)]
+        CHECKS.true(False, 'an event beyond the last')
+    except IndexError as error:
+        CHECKS.true(f'{len(rows)} events' in str(error), f'an event beyond the last: {error}')
     hits = events.filter(kind='impact', node=1)
     theirs = run.events('impact')
     same(hits.time, theirs['time'][theirs['node'] == 1], 'events of a kind and a node')
@@ -143,7 +158,7 @@ def missing(result):
     says(('*EL PRINT writes it',), lambda: bare.element(1))
     says(('/energy', '*ENERGY PRINT'), lambda: bare.energy)
     CHECKS.true(len(bare.events) == 0 and list(bare.events) == [] and len(bare.events.time) == 0
-                and len(bare.events.filter(kind='impact')) == 0, 'no events are an empty table')
+                and len(bare.events.filter(kind='impact')) == 0 and bare.events[:] == [], 'no events are an empty table')
     CHECKS.true(bare.heading == '' and bare.title == 'result.h5', 'no heading: the name of the file')
     CHECKS.true(bare.nodes == [] and bare.contacts == [], 'nothing recorded: no names')
     empty = Result(without_tables(run_deck(BARE).path))
@@ -175,6 +190,41 @@ def without(name, function):
     CHECKS.true(f'pip install {name}' in text, f'without {name}: "{text}"')
 
 
+class Columns(dict):
+    """What is needed here of pandas.DataFrame: columns, all of one length and one dimension."""
+
+    def __init__(self, columns):
+        super().__init__({name: np.asarray(values) for name, values in columns.items()})
+        shapes = {values.shape for values in self.values()}
+        CHECKS.true(len(shapes) == 1 and len(shapes.pop()) == 1, f'a table of {len(self)} columns')
+
+    def set_index(self, name):
+        """The table without the column."""
+        return Columns({key: values for key, values in self.items() if key != name})
+
+
+def with_pandas(function):
+    """Calls a function with the package or a stand-in for its table."""
+    if importlib.util.find_spec('pandas'):
+        return function()
+    sys.modules['pandas'] = types.ModuleType('pandas')
+    sys.modules['pandas'].DataFrame = Columns
+    found = function()
+    del sys.modules['pandas']
+    return found
+
+
+def tables(result):
+    """The tables of a file."""
+    same(np.asarray(result.to_pandas('history')['node_3/U1']), result.node(3).U1, 'pandas: history')
+    same(np.asarray(result.to_pandas('energy')['total']), result.energy.total, 'pandas: energies')
+    same(np.asarray(result.to_pandas('events')['impulse']), result.events.impulse, 'pandas: events')
+    same(np.asarray(result.to_pandas('cost')['solves']), [result.cost.solves], 'pandas: cost')
+    text = message(result.to_pandas, 'model')
+    CHECKS.true('/model is no table' in text and 'array("model/NAME")' in text, f'no table: {text}')
+    CHECKS.true('/heat' in message(result.to_pandas, 'heat'), 'a group that is not there')
+
+
 def convert(result):
     """To pandas, meshio and pyvista."""
     frame = result.frames[4]
@@ -185,15 +235,7 @@ def convert(result):
         table = result.to_pandas('history')
         same(table['node_3/U1'].to_numpy(), result.node(3).U1, 'pandas: a column')
         same(table.index.to_numpy(), result.time, 'pandas: the index is the time')
-        same(result.to_pandas('energy')['total'].to_numpy(), result.energy.total, 'pandas: energies')
-        events = result.to_pandas('events')
-        same(events[events.kind == 'impact'].node.to_numpy(),
-             result.events.filter(kind='impact').node, 'pandas: events')
-    else:
-        sys.modules['pandas'] = stand_in('pandas', DataFrame=None)
-        (columns,), _ = result.events.to_pandas()
-        same(columns['impulse'], result.events.impulse, 'columns for pandas')
-        del sys.modules['pandas']
+    with_pandas(lambda: tables(result))
     real = importlib.util.find_spec('meshio') is not None
     if not real:
         sys.modules['meshio'] = stand_in('meshio', Mesh=None)
@@ -234,6 +276,42 @@ def convert_to_pyvista(frame):
         del sys.modules['pyvista']
 
 
+def read_headings():
+    """The heading wherever it stands: behind many lines, across the first block that is read, in any case,
+    and not what a comment or a longer word says."""
+    cards, filler = STRIP.split('*NODE,', 1), '** *HEADING of a comment\n' * 4000
+    for what, head, wanted in (
+            ('far down', filler + cards[0], 'Two elements fly against a wall'),
+            ('in any case', ' * heading \n** no\n  a, b*c\n\n ½ $\n', 'a, b*c ½ $'),
+            ('long', '*HEADING\n' + 'word\n' * 20000, ' '.join(['word'] * 20000)),
+            ('none', filler, '')):
+        with Result(run_deck(head + '*NODE,' + cards[1]).path) as result:
+            CHECKS.true(result.heading == wanted, f'heading {what}: "{result.heading[:40]}"')
+
+
+def read_names():
+    """Contacts go by the names that the deck has: carom folds a to z and no other letter."""
+    deck = STRIP.replace('NAME=FRONT', 'NAME=flöor * Ss²').replace('\nFRONT,', '\nFLöor* ss²,')
+    with Result(run_deck(deck).path) as result:
+        CHECKS.true(result.contacts == ['FLöOR*SS²-WALL'], f'as carom folds it: {result.contacts}')
+        for name in ('FLöOR*SS²-WALL', 'flöor * Ss²-Wall', ' FLöor* ss² - wall'):
+            same(result.contact(name).CF1, result.history['contact_FLöOR*SS²-WALL/CF1'], f'contact("{name}")')
+        own = 'contact_FLöOR*SS²-WALL/CF'
+        CHECKS.true(result.history.select(own + '1') == [own + '1'] and result.history.select(own + '?')
+                    == [own + '1', own + '2', own + '3'], 'names with * of their own are found by pattern')
+        CHECKS.true('FLÖOR' in message(result.contact, 'FLÖOR*SS²-WALL'), 'another letter is another name')
+
+
+def read_brackets():
+    """Columns whose names have brackets and stars: these are themselves, and * and ? patterns too."""
+    table = Table({name: [] for name in ('contact_A[1]/CF1', 'contact_A[2]/CF1', 'contact_A1/CF1', 'a*/U', 'ab/U')},
+                  lambda name, known: f'no {name}')
+    for pattern, wanted in (('contact_A[1]/CF1', ['contact_A[1]/CF1']), ('a*/U', ['a*/U']), ('a?/U', ['a*/U', 'ab/U']),
+                            ('contact_A[*', ['contact_A[1]/CF1', 'contact_A[2]/CF1'])):
+        CHECKS.true(table.select(pattern) == wanted, f'{pattern} selects {table.select(pattern)}')
+    CHECKS.true(message(table.select, 'contact_A[12]/CF1') == 'no contact_A[12]/CF1', '[12] is no pattern')
+
+
 def read_modes():
     """Frequencies and modes."""
     run = run_deck(INPUT / 'cantilever' / 'modes.inp')
@@ -241,6 +319,12 @@ def read_modes():
         same(result.frequencies, run['frequency/frequency'], 'frequencies')
         same(result.modes.effective_mass, run['frequency/effective_mass'], 'effective masses')
         same(result.frames.times, result.frequencies, 'a frame a mode')
+        table = with_pandas(lambda: result.to_pandas('frequency'))
+        same(np.asarray(table['frequency']), result.frequencies, 'pandas: a row a mode')
+        for k, axis in enumerate('xyz'):
+            same(np.asarray(table[f'effective_mass_{axis}']), result.modes.effective_mass[:, k],
+                 f'pandas: effective masses along {axis}')
+        CHECKS.true('moving_mass' not in set(table), 'pandas: no column without a row a mode')
         CHECKS.true(result.heading.startswith('Cantilever'), 'heading of an example')
 
 
@@ -269,6 +353,7 @@ def read_in_mid_run():
 
 
 def main():
+    names()
     run = run_deck(STRIP)
     with Result(run.path) as result:
         read_columns(run, result)
@@ -277,6 +362,9 @@ def main():
         read_frames(run, result)
         missing(result)
         convert(result)
+    read_headings()
+    read_names()
+    read_brackets()
     read_modes()
     read_in_mid_run()
     CHECKS.finish()

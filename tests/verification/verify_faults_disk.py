@@ -20,7 +20,8 @@ FAILING = r"""
 #include <string.h>
 #include <unistd.h>
 
-/* Whether this write to a file OUT.h5.part fails: all do from the one on that FAIL_AT counts to. */
+/* Whether this write to a file OUT.h5.part fails: all do from the one on that FAIL_AT counts to, or as
+   soon as there is the file FAIL_WITH. */
 static int fails(int descriptor)
 {
    static long left = -1;
@@ -29,9 +30,13 @@ static int fails(int descriptor)
    snprintf(link, sizeof link, "/proc/self/fd/%d", descriptor);
    length = readlink(link, path, sizeof path);
    if (length < 5 || memcmp(path + length - 5, ".part", 5) != 0) return 0;
-   if (left < 0) left = atol(getenv("FAIL_AT"));
-   if (left > 1) { left--; return 0; }
-   left = 1;
+   if (getenv("FAIL_WITH")) {
+      if (access(getenv("FAIL_WITH"), F_OK) != 0) return 0;
+   } else {
+      if (left < 0) left = atol(getenv("FAIL_AT"));
+      if (left > 1) { left--; return 0; }
+      left = 1;
+   }
    errno = EIO;
    return 1;
 }
@@ -106,7 +111,7 @@ def check_small_disk(checks):
     folder = scratch_folder()
     reason = mounted(folder, 3000000)
     if reason:
-        print(f'        no small disk can be made here ({reason}); the limit of sizes is tested')
+        checks.skip(f'a small disk, which cannot be made here ({reason}); the limit of sizes is tested')
         return
     try:
         place = Place(endless(3), folder=folder)
@@ -124,11 +129,18 @@ def check_small_disk(checks):
                     'a disk that is full from the beginning: no results are left')
         for name in ('deck.h5', 'deck.log', 'deck.sta', 'second.log', 'second.sta', 'filler'):
             (folder / name).unlink(missing_ok=True)
-        run = place.start()
-        run.wait_for('deck.h5.part')
-        while (folder / 'deck.h5.part').stat().st_size < 1600000:      # twice that has no room
-            time.sleep(0.0005)
-        run.halt()
+        for every in (3, 30, 300):      # slower where the disk was full before the run was halted
+            (folder / 'deck.inp').write_text(endless(every))
+            run = place.start('--overwrite')
+            part = folder / 'deck.h5.part'
+            run.wait_for('deck.h5.part')
+            with contextlib.suppress(FileNotFoundError):
+                while part.stat().st_size < 1600000:      # twice that has no room
+                    time.sleep(0.0005)
+                run.halt()
+                if part.stat().st_size < 2400000:
+                    break
+            run.kill()
         run.until(PUBLISHED)
         run.go_on()
         said(checks, run.finish(), 3, ["'deck.h5'", 'No space left on device'],
@@ -179,9 +191,9 @@ def check_failing_disk(checks):
                               'message, and the results of before')
     # after a publication
     place = Place(endless(10))
-    run = place.start(env={'LD_PRELOAD': str(library), 'FAIL_AT': '2000'})
+    run = place.start(env={'LD_PRELOAD': str(library), 'FAIL_WITH': 'deck.h5'})
     run.wait_for('deck.h5.part')
-    time.sleep(0.3)
+    run.until_it_computes(0.3)
     run.halt()
     run.until(PUBLISHED)
     run.go_on()

@@ -3,6 +3,7 @@
 The decks of input/from_gmsh and input/from_freecad, small meshes written as gmsh writes them, and, where the
 Python package gmsh is installed, meshes that it makes now.
 """
+import platform
 import re
 import subprocess
 import sys
@@ -177,7 +178,9 @@ def main():
     try:
         import gmsh
     except (ImportError, OSError) as error:
-        print(f'gmsh is not here ({error}): no meshes were made anew; all decks were run')
+        # there are wheels of gmsh for this machine alone
+        checks.skip(f'new meshes, as gmsh is not here ({error}); all decks were run',
+                    installed=platform.machine() == 'x86_64')
     else:
         import made_by_gmsh
         made_by_gmsh.check(checks, gmsh)

@@ -130,18 +130,105 @@ def options(sdof):
     plt.switch_backend('Agg')
     status, said = start('plot_history', 'none.h5')
     CHECKS.true(status == 1 and said == "error: no result file 'none.h5'\n", f'status {status}: {said}')
+    os.environ['MPLBACKEND'] = 'foo'
+    status, said = start('plot_energy', sdof, '-o', FOLDER / 'foo.png')
+    CHECKS.true(status == 0 and 'foo.png' in said, f'MPLBACKEND=foo without --show: {said}')
+    status, said = start('plot_energy', sdof, '--show')
+    CHECKS.true(status == 1 and said.startswith('error: --show: no window with foo'), f'with it: {said}')
+    del os.environ['MPLBACKEND']
     bare = run_deck(BARE).path
-    for script, card in (('plot_energy', '*ENERGY PRINT'), ('plot_phase', '*NODE PRINT')):
+    for script, card in (('plot_energy', '*ENERGY PRINT'), ('plot_phase', '*NODE PRINT'),
+                         ('plot_history', '*NODE PRINT')):
         error = call(script, bare)[1]
-        CHECKS.true(card in error, f'{script}: {error}')
+        CHECKS.true(card in error and '--columns' not in error, f'{script}: {error}')
     CHECKS.true(len(set(COLOURS)) == len(COLOURS) == 7, 'seven colours')
+
+
+def freedoms(strip):
+    """plot_phase draws the freedom that the history has, or says which it has."""
+    up = BARE.replace('*SPRING, ELSET=S\n1\n', '*SPRING, ELSET=S\n2\n').replace('\n1, 1, 1\n', '\n1, 2, 1\n')
+    one = run_deck(up.replace('*END', '*NODE PRINT\nU, V\n*END')).path
+    for path, words, wanted in ((strip, [], 'U1, node 1'), (strip, ['--dof', 2], 'U2, node 1'),
+                                (strip, ['--node', 12], 'U1, node 12'), (one, [], 'U2, node 1'),
+                                (one, ['--node', 1], 'U2, node 1')):
+        with plt.rc_context({'svg.fonttype': 'none'}):
+            error = call('plot_phase', path, '--save', FOLDER / 'phase.svg', *words)[1]
+        CHECKS.true(not error and f'displacement {wanted}<' in (FOLDER / 'phase.svg').read_text(),
+                    f'plot_phase {words} draws {wanted}: {error}')
+    error = call('plot_phase', one, '--dof', 1)[1]
+    CHECKS.true('both U1 and V1' in error and 'there is --dof 2' in error, f'the wrong freedom: {error}')
+    CHECKS.true('no history of node 4' in call('plot_phase', strip, '--node', 4)[1], 'no such node')
+
+
+def legends_below(sdof):
+    """A legend at the foot of a figure hides nothing of its axes."""
+    module = importlib.import_module('plot_phase')
+    with module.Result(sdof) as result:
+        figure = module.draw(result, 1, 1, -0.5)
+    figure.draw_without_rendering()
+    legend, axes = figure.legends[0].get_window_extent(), figure.axes[0].get_tightbbox()
+    CHECKS.true(0 < legend.y0 < legend.y1 < axes.y0, f'the legend is below the axes: {legend.y1:.0f}, {axes.y0:.0f}')
+
+
+def modes():
+    """animate lets one mode swing through a period: its displacements, its colours, its title."""
+    body = STRIP.split('*SURFACE')[0]
+    path = run_deck(body + '*BOUNDARY\n1, 1, 2\n11, 1, 2\n*STEP\n*FREQUENCY\n4\n*NODE FILE\nU\n'
+                    '*EL FILE\nS\n*END STEP\n').path
+    module = importlib.import_module('animate')
+    with module.Result(path) as result:
+        film, frame = module.Swing(result, 2, 3.0), result.frames[1]
+        quarter = film.n_frames // 4
+        for picture, part in ((0, 0), (quarter, 1), (2 * quarter, 0), (3 * quarter, -1)):
+            away = film.place(picture) - (frame.points + 3.0 * part * frame.U)[:, :2]
+            CHECKS.true(np.abs(away).max() < 1e-12, f'picture {picture} of mode 2 is {part} times its shape')
+            s11, whole = film.field('S11', picture)[0], film.field('S11', quarter)[0]
+            CHECKS.true(np.abs(s11 - part * whole).max() < 1e-12 * np.abs(whole).max()
+                        and film.field('MISES', picture)[0].min() >= 0, f'picture {picture}: its stresses')
+        CHECKS.true(film.title(0, set()) == f'mode 2, frequency {frame.time:.5g}', film.title(0, set()))
+    module.SWING = 8    # for the sake of time
+    for words, wanted in ((['--mode', 4, '--field', 'MISES'], '8 frames'),
+                          (['--mode', 5], 'the modes 1 to 4, not 5'), (['--every', 2], 'a mode has none')):
+        said, error = call('animate', path, '-o', FOLDER / 'mode.gif', *words)
+        CHECKS.true(wanted in said + error, f'animate {words} of modes: {error or said}')
+
+
+def numbers(path):
+    """Arguments that are no finite numbers are refused, and nothing is drawn."""
+    picture = FOLDER / 'number.png'
+    for script, word in (('plot_mesh', '--scale=nan'), ('animate', '--scale=-inf'), ('animate', '--fps=nan'),
+                         ('plot_phase', '--wall=1e999'), ('plot_contact', '--range=0,nan'),
+                         ('plot_contact', '--hertz=1,inf'), ('plot_contact', '--centre=x')):
+        said = io.StringIO()
+        with contextlib.redirect_stderr(said):
+            _, status = call(script, path, word, '-o', picture)
+        CHECKS.true(status == '2' and word.split('=')[0] in said.getvalue() and not picture.exists(),
+                    f'{script} {word}: {said.getvalue().splitlines()[-1]}')
+
+
+def words_of_the_user():
+    """Headings and names with $, ² and the like are drawn as they are, not as mathematics."""
+    deck = STRIP.replace('Two elements fly', r'$5 and $7, $\foo$').replace('FRONT', 'fr$o$nt²')
+    path = run_deck(deck).path
+    title = r'$5 and $7, $\foo$ against a wall'
+    with plt.rc_context({'svg.fonttype': 'none'}):
+        for script, words, wanted in (
+                ('plot_history', ['--columns', 'contact*/CF?'], [title, 'contact FR$O$NT²-WALL']),
+                ('plot_energy', [], [title]), ('plot_mesh', [], [title])):
+            picture = FOLDER / 'words.svg'
+            error = call(script, path, '--save', picture, *words)[1]
+            drawn = picture.read_text()
+            CHECKS.true(not error and all(f'>{text}<' in drawn for text in wanted),
+                        f'{script} draws {wanted}: {error}')
+    said, error = call('animate', path, '--every', 5, '-o', FOLDER / 'words.gif')
+    CHECKS.true('3 frames' in said, f'animate with such a heading: {error or said}')
 
 
 def call_title(path):
     """The title of the history's figure."""
     module = importlib.import_module('plot_history')
     with module.Result(path) as result:
-        return module.draw(result, ['node_1/U1'], False).get_suptitle()
+        return module.draw(result, ['node_1/U1'], False)._suptitle.get_text()
 
 
 def large_file():
@@ -187,6 +274,11 @@ def streams(small):
     events = {'time': np.linspace(0, 1, 100_000), 'kind': np.full(100_000, 'impact')}
     count, times = event_times(Rows(events), 0.0, 1.0)['impact']
     CHECKS.true(count == 100_000 and len(times) <= BINS_OF_TICKS + 1, 'many events are few ticks')
+    events = {'time': np.array([0.1, 0.1, 0.2, 0.2, 0.2, 0.9]),
+              'kind': np.array(['impact'] * 5 + ['release'])}
+    found = event_times(Rows(events), 0.0, 0.5)
+    CHECKS.true(found.keys() == {'impact'} and found['impact'][0] == 5
+                and found['impact'][1].tolist() == [0.1, 0.2], 'events at one time are counted each')
 
 
 class Rows(dict):
@@ -202,6 +294,12 @@ def main():
                      ).path
     draw_all(sdof, strip)
     options(sdof)
+    freedoms(strip)
+    legends_below(sdof)
+    numbers(strip)
+    modes()
+    CHECKS.true('no modes' in call('animate', sdof, '--mode', 1)[1], 'animate --mode without modes')
+    words_of_the_user()
     streams(sdof)
     CHECKS.finish()
 

@@ -360,6 +360,22 @@ def check_states():
         checks.true(file['cost/increments'][0] == 30100, 'increments are counted on')
 
 
+def check_step_end():
+    """An error at the beginning of a step: the state is that of the end of the step before, however fast it was."""
+    text = SMALL.replace('0.1, 2', '0.01, 2').replace('FREQUENCY=5', 'FREQUENCY=1')
+    last = SECOND.replace('*END STEP', '*ENERGY PRINT\n*RESTART, WRITE\n*END STEP')
+    path = FOLDER / 'failed.h5'
+    fails = write('failed', text + last.replace('*ENERGY PRINT', '*ENERGY PRINT, LIMIT=1e-300'))
+    _, said, _ = carom(fails, '-o', path, status=4)
+    with h5py.File(path) as file:
+        place = [int(file[f'restart/course/{name}'][0]) for name in ('step', 'increment')]
+    checks.true('at time 2.05 exceeds LIMIT' in said and place == [1, 200],
+                f'an error in the first increment of step 2: the state is that of step, increment {place}')
+    carom(write('later', text + last), '--restart', path)
+    same_as_whole(text + last, path, 'gone on from there')
+
+
+check_step_end()
 check_allowed()
 check_records()
 check_refused()

@@ -147,6 +147,67 @@ def check_static_after(checks):
     checks.at_most(np.max(np.abs(run['energy/balance_error'])), 1e-12, 'static after motion: balance')
 
 
+def check_dropped(checks):
+    """What OP=NEW drops in a static step goes down over it, loads and supports alike, and each
+    increment's work is known: u = 1 - s, energy (1 - s)^2/2 on a spring of 1."""
+    spring = MASSES.format(x=5, sprung=1) + '*AMPLITUDE, NAME=up, TIME=TOTAL TIME\n0, 0, 1, 1\n'
+    held = '*BOUNDARY\n2, 1\n'
+    again = '*BOUNDARY, OP=NEW\n2, 1\n'
+    cases = {'a force': (held, '*CLOAD\n1, 1, 1\n', '*CLOAD, OP=NEW\n'),
+             'a force by total time': (held, '*CLOAD, AMPLITUDE=up\n1, 1, 1\n', '*CLOAD, OP=NEW\n'),
+             'gravity': (held, '*DLOAD\nmasses, GRAV, 1, 1, 0, 0\n', '*DLOAD, OP=NEW\n'),
+             'a support': (held, '*BOUNDARY\n1, 1, 1, 1\n', again),
+             'a support by an equation': ('*EQUATION\n2\n2, 1, 1, 1, 1, -1\n',
+                                          '*BOUNDARY\n1, 1, 1, 1\n', '*BOUNDARY, OP=NEW\n')}
+    for name, (before, push, drop) in cases.items():
+        if 'equation' in name:
+            text = spring.replace('3, 1\n', '3, 2\n')
+        else:
+            text = spring
+        run = run_deck(text + before + step('STATIC, DIRECT', 1, push, PRINTS, first=0.25)
+                       + step('STATIC, DIRECT', 2, drop, PRINTS, first=0.5)
+                       + step('STATIC, DIRECT', 1, '', PRINTS, first=0.5))
+        t, label = run['history/time'], f'OP=NEW drops {name}'
+        left = np.where(t <= 1, t, np.maximum(0, 1 - (t - 1)/2))
+        checks.close(run['history/node_1/U1'], left, 1e-12, label + ': displacement')
+        checks.close(run['energy/external_work'], left**2/2, 1e-12, label + ': work')
+        checks.at_most(np.abs(run['energy/balance_error']).max(), 1e-12, label + ': balance')
+
+
+def check_replaced(checks):
+    """A force that OP=NEW drops and gives anew goes from the old value to the new one; a support
+    that is dropped after motion leaves what it held as a load."""
+    spring = MASSES.format(x=5, sprung=1) + '*BOUNDARY\n2, 1\n'
+    run = run_deck(spring + step('STATIC, DIRECT', 1, '*CLOAD\n1, 1, 1\n', PRINTS, first=0.25)
+                   + step('STATIC, DIRECT', 1, '*CLOAD, OP=NEW\n1, 1, 3\n', first=0.25))
+    t = run['history/time']
+    checks.close(run['history/node_1/U1'], np.where(t <= 1, t, 2*t - 1), 1e-12, 'OP=NEW, a new value')
+    checks.at_most(np.abs(run['energy/balance_error']).max(), 1e-12, 'OP=NEW, a new value: balance')
+    run = run_deck(spring + step('DYNAMIC, DIRECT', 1, '*BOUNDARY\n1, 1, 1, 1\n', PRINTS)
+                   + step('STATIC, DIRECT', 1, '*BOUNDARY, OP=NEW\n2, 1\n', first=0.25))
+    t = run['history/time']
+    checks.close(run['history/node_1/U1'][t > 1], 2 - t[t > 1], 1e-12, 'a support goes after motion')
+    checks.at_most(np.abs(run['energy/balance_error']).max(), 1e-12, 'and its work is known')
+
+
+def check_unloading(checks):
+    """A yielded square whose load OP=NEW drops springs back elastically, increment by increment."""
+    load = SQUARE[:SQUARE.index('*STEP')] + (
+        '*STEP\n*STATIC, DIRECT\n0.05, 1\n*CLOAD\n2, 1, 10\n3, 1, 10\n*NODE PRINT\nU\n*EL PRINT\n'
+        'PEEQ\n*ENERGY PRINT\n*END STEP\n')
+    run = run_deck(load + '*STEP\n*STATIC, DIRECT\n0.25, 1\n*CLOAD, OP=NEW\n*END STEP\n')
+    t, u, work = (run[name] for name in ('history/time', 'history/node_2/U1', 'energy/external_work'))
+    force = np.where(t <= 1, 20*t, 20*(2 - t))
+    back = u[t >= 1]
+    checks.close(back - back[0], (t[t >= 1] - 1)*(back[-1] - back[0]), 1e-9, 'springs back in proportion')
+    checks.close((back[0] - back[-1])*1000/(1 - 0.3**2)/20, 1, 1e-9, 'by its plane strain stiffness')
+    peeq = run['history/element_1/PEEQ'][t >= 1]
+    checks.close(peeq, peeq[0] + 0*peeq, 1e-12, 'and yields no more')
+    trapezoids = np.append(0, np.cumsum(np.diff(u)*(force[1:] + force[:-1])/2))
+    checks.close(work, trapezoids, 1e-9, 'with the work of its load')
+    checks.at_most(np.abs(run['energy/balance_error']).max(), 1e-6*work.max(), 'and in balance')
+
+
 def check_resting(checks):
     """What only contact would hold cannot be found at rest; the message says why."""
     run = run_deck('*NODE\n1, 0, 0\n*ELEMENT, TYPE=MASS, ELSET=m\n1, 1\n*MASS, ELSET=m\n2\n'
@@ -227,7 +288,7 @@ def check_tolerance(checks):
 def main():
     checks = Checks()
     for check in (check_pressed, check_jump, check_release, check_goes_on, check_static_after,
-                  check_resting, check_modes, check_impulses, check_kept, check_tolerance):
+                  check_dropped, check_replaced, check_unloading, check_resting, check_modes, check_impulses, check_kept, check_tolerance):
         check(checks)
     checks.finish()
 
