@@ -17,7 +17,7 @@ module part_file
    private
 
    public :: part_file_type, check_output, claim, fill_part, publish, finish, discard
-   public :: reserve_room, forget_room, is_claimed, has_published, part_path, shown_path
+   public :: reserve_room, forget_room, is_claimed, has_published, part_path, shown_path, owner_in
 
    !> An output that this process alone may write to.
    type :: part_file_type
@@ -81,7 +81,9 @@ contains
       if (len(self%path) == 0) self%path = true_path(folder_of(path))//'/' &
             //path(index(path, '/', back=.true.) + 1:)
       before = look_at(part_path(self))
-      call lock_part(self, error)
+      call refuse_odd(self, part_ending, error)
+      if (.not. allocated(error)) call refuse_odd(self, copy_ending, error)
+      if (.not. allocated(error)) call lock_part(self, error)
       if (allocated(error)) return
       ! another run may have ended since
       call check_output(path, may_replace, error)
@@ -92,6 +94,20 @@ contains
       end if
       call remove_file(self%path//copy_ending)
    end subroutine claim
+
+   !> What stands in the place of a file beside the output and is none is left alone: it could
+   !> neither be written to nor be removed, or it would wait for a reader for ever.
+   subroutine refuse_odd(self, ending, error)
+      type(part_file_type), intent(in) :: self
+      character(len=*), intent(in) :: ending
+      type(error_type), allocatable, intent(out) :: error
+      type(file_facts_type) :: facts
+
+      facts = look_at(self%path//ending)
+      if (.not. facts%exists .or. is_regular(facts)) return
+      call file_error(error, self%shown//ending, 'it is a directory, pipe or device', &
+            'remove it, or give the results another name with -o')
+   end subroutine refuse_odd
 
    !> Opens and locks the part file.
    subroutine lock_part(self, error)
@@ -142,27 +158,38 @@ contains
       type(file_facts_type), intent(in) :: facts
       integer :: owner
       character(len=200) :: line
-      character(len=40) :: name
-      integer :: unit, status, place, first
+      integer :: unit, status
 
       owner = 0
-      write (name, '(a, z2.2, a, z2.2, a, i0, a)') ' ', facts%device(1), ':', facts%device(2), &
-            ':', facts%inode, ' '
-      name = adjustl(name)
       open (newunit=unit, file='/proc/locks', action='read', status='old', iostat=status)
       if (status /= 0) return
       do
          read (unit, '(a)', iostat=status) line
          if (status /= 0) exit
-         place = index(line, ' '//trim(lower_case(name))//' ')
-         if (place == 0 .or. index(line, 'FLOCK') == 0 .or. index(line, '->') > 0) cycle
-         first = index(line(:place - 1), ' ', back=.true.)
-         read (line(first:place), *, iostat=status) owner
-         if (status /= 0) owner = 0
-         exit
+         owner = owner_in(line, facts)
+         if (owner > 0) exit
       end do
       close (unit)
    end function lock_owner
+
+   !> The process that a line of /proc/locks says to hold the lock of a file, 0 if it is of another
+   !> one; the file is MAJOR:MINOR:INODE there, the first two with two hexadecimal digits or more.
+   pure function owner_in(line, facts) result(owner)
+      character(len=*), intent(in) :: line
+      type(file_facts_type), intent(in) :: facts
+      integer :: owner
+      character(len=40) :: name
+      integer :: status, place, first
+
+      owner = 0
+      write (name, '(z0.2, a, z0.2, a, i0)') facts%device(1), ':', facts%device(2), ':', &
+            facts%inode
+      place = index(line, ' '//trim(lower_case(name))//' ')
+      if (place == 0 .or. index(line, 'FLOCK') == 0 .or. index(line, '->') > 0) return
+      first = index(line(:place - 1), ' ', back=.true.)
+      read (line(first + 1:place), *, iostat=status) owner
+      if (status /= 0) owner = 0
+   end function owner_in
 
    !> Copies a file into the part file, which is empty so far.
    subroutine fill_part(self, path, error)
@@ -228,6 +255,8 @@ contains
                lost_cure)
          return
       end if
+      call refuse_odd(self, copy_ending, error)
+      if (allocated(error)) return
       call replace_by_copy(self, reason)
       if (len(reason) > 0) call full_error(self, reason, error)
    end subroutine publish
@@ -237,6 +266,8 @@ contains
       type(part_file_type), intent(inout) :: self
       character(len=:), allocatable, intent(out) :: reason
 
+      ! a pipe, say, would wait for a reader
+      call remove_file(self%path//copy_ending)
       call copy_open(self%descriptor, self%path//copy_ending, .true., reason)
       if (len(reason) == 0) call rename_file(self%path//copy_ending, self%path, reason)
       if (len(reason) > 0) call remove_file(self%path//copy_ending)

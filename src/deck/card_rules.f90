@@ -132,10 +132,11 @@ contains
    end subroutine check_keyword
 
    !> Checks level, parameters and the presence of data of a card whose rule is set.
-   pure subroutine check_card(card, data, source, error)
+   pure subroutine check_card(card, data, source, behind_step, error)
       type(card_type), intent(in) :: card
       type(place_type), intent(in) :: data(:)   !! the data lines of the deck
       type(source_type), intent(in) :: source
+      logical, intent(in) :: behind_step        !! a step has ended or begun before the card
       type(error_type), allocatable, intent(out) :: error
       integer :: i
 
@@ -144,7 +145,7 @@ contains
          if (allocated(error)) return
       end do
       if (is_note_card(card%rule)) return
-      call check_level(card, source, error)
+      call check_level(card, source, behind_step, error)
       if (allocated(error)) return
       do i = 1, size(card%parameters)
          call check_parameter(card, i, source, error)
@@ -155,9 +156,10 @@ contains
       call check_data(card, data, source, error)
    end subroutine check_card
 
-   pure subroutine check_level(card, source, error)
+   pure subroutine check_level(card, source, behind_step, error)
       type(card_type), intent(in) :: card
       type(source_type), intent(in) :: source
+      logical, intent(in) :: behind_step
       type(error_type), allocatable, intent(out) :: error
       character(len=:), allocatable :: level, name
 
@@ -169,6 +171,9 @@ contains
       else if (level == 'step' .and. card%step == 0) then
          call fail_at(error, source, card%place, name//' must stand inside a step', &
                cure='move it between *STEP and *END STEP')
+      else if (card%step == 0 .and. behind_step .and. (level == 'model' .or. level == 'both')) then
+         call fail_at(error, source, card%place, name//' stands behind a step and would hold ' &
+               //'from the start', cure='move it before the first *STEP, or what it says into a step')
       end if
    end subroutine check_level
 

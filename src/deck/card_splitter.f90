@@ -181,7 +181,7 @@ contains
       type(card_type) :: card
       type(place_type) :: place
       logical :: continued
-      integer :: status
+      integer :: next, status
 
       allocate (card%parameters(0), stat=status)
       call check_allocation(status)
@@ -198,8 +198,13 @@ contains
          return
       end if
       do while (continued .and. line < source%files(file)%n_lines)
-         if (kind_of(source%files(file), line + 1) /= kind_data) exit
-         line = line + 1
+         next = line + 1
+         do while (kind_of(source%files(file), next) == kind_comment)
+            if (next == source%files(file)%n_lines) exit
+            next = next + 1
+         end do
+         if (kind_of(source%files(file), next) /= kind_data) exit
+         line = next
          place%line = line
          place%card = card%place%line
          call read_card_line(card, source_line(source, file, line), place, continued)

@@ -66,12 +66,15 @@ contains
       type(model_type), intent(inout) :: model
       type(deck_type), intent(inout) :: deck
       type(error_type), allocatable, intent(out) :: error
+      logical :: behind_step
       integer :: i
 
       call keep_heading(model, deck)
+      behind_step = .false.
       do i = 1, deck%n_cards
-         call check_card(deck%cards(i), deck%data, model%source, error)
+         call check_card(deck%cards(i), deck%data, model%source, behind_step, error)
          if (allocated(error)) return
+         behind_step = behind_step .or. deck%cards(i)%step > 0
          if (deck%cards(i)%keyword == 'OUTPUT' .and. has_parameter(deck%cards(i), 'COMPRESS')) then
             call read_compression(model, deck%cards(i), error)
             if (allocated(error)) return

@@ -179,7 +179,8 @@ contains
       call new_error(error, status_numerical, 'no convergence in ' &
             //to_text(scene%system%max_iterations)//' iterations at time '//to_text(t) &
             //new_line('a') &
-            //'  cure: a smaller increment, or tables without sharp drops of stiffness')
+            //'  cure: a smaller increment; else tables without sharp drops of stiffness, ' &
+            //'*PLASTIC with some hardening, or another METHOD of *IMPACT')
    end subroutine not_converged
 
    !> S(d) = f + Gt lambda with 0 <= lambda, g >= 0 on all rows; the motion solution is a

@@ -16,7 +16,7 @@ module restart_group
    private
 
    public :: restart_group_type, new_restart_group, write_state, write_deck_names, remove_state
-   public :: read_state
+   public :: read_state, continue_group
 
    !> To be raised when entries change their meaning.
    integer, parameter :: format_version = 1
@@ -27,15 +27,18 @@ module restart_group
    !> What an entry holds stands before its name in the list.
    character(len=*), parameter :: mark_real = 'real ', mark_integer = 'integer '
    character(len=*), parameter :: nl = new_line('a')
+   !> Bytes of a dataset beyond its values, of a number, of a line of the list of entries.
+   integer(int64), parameter :: header = 2048, number = 8
+   integer(int64), parameter :: line = name_length + len(mark_integer)
 
-   !> What is in the group, as far as this run has written it.
+   !> What is in the group, as far as this run has written it or has taken it over.
    type :: restart_group_type
       private
       character(len=name_length), allocatable :: files(:)         ! of the deck, in their order
       integer, allocatable :: n_lines(:)                          ! of them
       character(len=name_length), allocatable :: definitions(:)   ! NAME=VALUE of the command line
       character(len=name_length), allocatable :: entries(:)
-      integer(int64) :: bytes = 0                                 ! of their values
+      integer(int64), allocatable :: sizes(:)                     ! numbers of each entry
    end type restart_group_type
 
 contains
@@ -73,30 +76,49 @@ contains
             'parameters replaced by --define', error)
    end subroutine write_deck_names
 
+   !> The group is there already, with the archive that was read from it: its entries are written
+   !> anew where they lie.
+   subroutine continue_group(self, archive)
+      type(restart_group_type), intent(inout) :: self
+      type(archive_type), intent(in) :: archive
+      character(len=name_length) :: entries(archive%n)
+      integer :: i
+
+      do i = 1, archive%n
+         entries(i) = marked_name(archive%entries(i))
+      end do
+      self%entries = entries
+      call keep_sizes(self, archive)
+   end subroutine continue_group
+
    !> Writes the archive in the place of the one before; where the disk has no room for it, that one
-   !> stays whole.
+   !> stays whole: all room is reserved before anything is changed.
    subroutine write_state(self, file, archive, error)
       type(restart_group_type), intent(inout) :: self
       type(hdf5_file_type), intent(inout) :: file
       type(archive_type), intent(in) :: archive
       type(error_type), allocatable, intent(out) :: error   !! status_file
       character(len=name_length) :: entries(archive%n)
-      integer(int64) :: checks(archive%n)
+      integer(int64) :: checks(archive%n), bytes
       integer :: i
 
-      if (.not. allocated(self%entries)) call begin_group(self, file, error)
+      do i = 1, archive%n
+         entries(i) = marked_name(archive%entries(i))
+         checks(i) = check_sum(archive%entries(i))
+      end do
+      bytes = needed_room(self, archive, entries)
+      if (bytes > 0) call file%reserve(bytes, error)
       if (allocated(error)) return
-      call make_room(self, file, archive, error)
+      if (.not. allocated(self%entries)) call begin_group(self, file, error)
       if (allocated(error)) return
       do i = 1, archive%n
          call write_entry(file, archive%entries(i), error)
          if (allocated(error)) return
-         entries(i) = marked_name(archive%entries(i))
-         checks(i) = check_sum(archive%entries(i))
       end do
       call file%overwrite(contents//'/checks', checks, 'check sums of the entries', error)
       if (allocated(error)) return
       call list_entries(self, file, entries, error)
+      call keep_sizes(self, archive)
    end subroutine write_state
 
    !> An empty group; what an earlier run has left there goes.
@@ -114,31 +136,69 @@ contains
             'version of the meaning of the entries', error)
       if (allocated(error)) return
       call write_deck_names(self, file, error)
-      allocate (self%entries(0), stat=status)
+      allocate (self%entries(0), self%sizes(0), stat=status)
       call check_allocation(status)
    end subroutine begin_group
 
-   !> Room for all entries, where they are not those of the state before.
-   subroutine make_room(self, file, archive, error)
-      type(restart_group_type), intent(inout) :: self
-      type(hdf5_file_type), intent(inout) :: file
+   !> Bytes of all that has no place of its size in the group yet, 0 if everything has.
+   pure function needed_room(self, archive, entries) result(bytes)
+      type(restart_group_type), intent(in) :: self
       type(archive_type), intent(in) :: archive
-      type(error_type), allocatable, intent(out) :: error
-      integer(int64), parameter :: header = 2048
-      integer(int64) :: bytes
+      character(len=*), intent(in) :: entries(:)   !! their names, marked
+      integer(int64) :: bytes, n_numbers
       integer :: i
 
       bytes = 0
       do i = 1, archive%n
-         associate (entry => archive%entries(i))
-            if (allocated(entry%reals)) bytes = bytes + 8_int64*size(entry%reals, kind=int64)
-            if (allocated(entry%integers)) bytes = bytes + 8_int64*size(entry%integers, kind=int64)
-         end associate
+         n_numbers = size_of(archive%entries(i))
+         if (has_place(self, i, entries(i), n_numbers)) cycle
+         bytes = bytes + header + number*n_numbers
       end do
-      if (archive%n == size(self%entries) .and. bytes == self%bytes) return
-      call file%reserve(bytes + (archive%n + 10)*header, error)
-      if (.not. allocated(error)) self%bytes = bytes
-   end subroutine make_room
+      if (allocated(self%entries)) then
+         if (bytes == 0 .and. size(self%entries) == archive%n) return
+      end if
+      ! the group with its format and its deck, the list and the check sums
+      bytes = bytes + 8*header + (line + number)*archive%n &
+            + line*(2*size(self%files) + size(self%definitions))
+   end function needed_room
+
+   !> Whether an entry of this name and size is there; most have the same number as before.
+   pure logical function has_place(self, i, name, n_numbers)
+      type(restart_group_type), intent(in) :: self
+      integer, intent(in) :: i
+      character(len=*), intent(in) :: name       !! marked
+      integer(int64), intent(in) :: n_numbers
+
+      has_place = .false.
+      if (.not. allocated(self%entries)) return
+      if (i <= size(self%entries)) has_place = self%entries(i) == name &
+            .and. self%sizes(i) == n_numbers
+      if (.not. has_place) has_place = any(self%entries == name .and. self%sizes == n_numbers)
+   end function has_place
+
+   subroutine keep_sizes(self, archive)
+      type(restart_group_type), intent(inout) :: self
+      type(archive_type), intent(in) :: archive
+      integer(int64) :: sizes(archive%n)
+      integer :: i
+
+      do i = 1, archive%n
+         sizes(i) = size_of(archive%entries(i))
+      end do
+      self%sizes = sizes
+   end subroutine keep_sizes
+
+   !> Numbers of an entry.
+   pure function size_of(entry) result(n)
+      type(entry_type), intent(in) :: entry
+      integer(int64) :: n
+
+      if (allocated(entry%reals)) then
+         n = size(entry%reals, kind=int64)
+      else
+         n = size(entry%integers, kind=int64)
+      end if
+   end function size_of
 
    subroutine write_entry(file, entry, error)
       type(hdf5_file_type), intent(inout) :: file

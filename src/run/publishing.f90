@@ -57,25 +57,28 @@ contains
       due = seconds_now() - self%last >= max(wait, share*self%price)
    end function is_due
 
-   !> Publishes all results and brings the log to its file.
+   !> Brings the log to its file and publishes all results. The log goes first: whatever ends the
+   !> run, status lines up to the state that others see are there.
    subroutine publish_now(self, results, log, cost, error, began)
       type(publishing_type), intent(inout) :: self
       type(result_file_type), intent(inout) :: results
-      type(log_type), intent(in) :: log
+      type(log_type), intent(inout) :: log
       type(cost_type), intent(inout) :: cost
       type(error_type), allocatable, intent(out) :: error   !! status_file
       real(wp), intent(in), optional :: began    !! when what is published was begun to be made
+      type(error_type), allocatable :: log_error
       real(wp) :: start
       integer :: outer
 
       call enter(cost, phase_output, outer, .true.)
       start = seconds_now()
       if (present(began)) start = began
+      call check_log(log, log_error)
       call publish_results(results, error)
       self%last = seconds_now()
       self%price = self%last - start
       call leave(cost, outer)
-      if (.not. allocated(error)) call check_log(log, error)
+      if (.not. allocated(error) .and. allocated(log_error)) call move_alloc(log_error, error)
    end subroutine publish_now
 
 end module publishing

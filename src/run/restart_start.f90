@@ -3,7 +3,7 @@ module restart_start
    use kinds, only: wp
    use errors, only: error_type, new_error, status_deck, status_file
    use text, only: to_text
-   use file_calls, only: file_facts_type, look_at, is_same
+   use file_calls, only: file_facts_type, look_at, is_regular, is_same
    use part_file, only: part_file_type, fill_part, discard
    use state_archive, only: archive_type
    use memory_shortage, only: check_allocation
@@ -13,7 +13,7 @@ module restart_start
    use deck_reader, only: definition_type
    use deck_changes, only: deck_text_type, cut_deck, find_change, records_differ
    use hdf5_reader, only: hdf5_reader_type
-   use restart_group, only: read_state, new_restart_group, write_deck_names
+   use restart_group, only: read_state, new_restart_group, continue_group, write_deck_names
    use restart_deck, only: read_restart_deck, definition_length
    use result_file, only: open_results, record_increment, write_system
    use result_extents, only: extents_type, resume_results
@@ -63,7 +63,10 @@ contains
       self%definitions = command%definitions
       self%facts = look_at(self%path)
       self%same_file = is_same(self%facts, look_at(command%output))
-      call reader%open(self%path, error)
+      if (self%facts%exists .and. .not. is_regular(self%facts)) call new_error(error, status_file, &
+            'cannot read '''//self%path//''': it is a directory, pipe or device'//nl &
+            //'  cure: name the result file of the run to go on with')
+      if (.not. allocated(error)) call reader%open(self%path, error)
       if (allocated(error)) return
       call read_state(reader, self%path, self%archive, error)
       if (.not. allocated(error)) call read_old_deck(reader, self%path, old, error)
@@ -222,6 +225,7 @@ contains
       if (self%resumed) then
          call output%results%pass_state(self%archive)
          call name_deck(self%definitions, simulation%model%source, output)
+         call continue_group(output%results%restart, self%archive)
          call write_deck_names(output%results%restart, output%results%file, error)
       end if
       if (self%resumed .and. .not. allocated(error)) return

@@ -5,16 +5,17 @@ module run_log
    use errors, only: error_type
    use state_archive, only: archive_type
    use text, only: to_text
-   use status_lines, only: read_status_lines
+   use status_lines, only: line_length, read_status_lines
    use notices, only: notice_list_type, is_warning, without_mark
    use progress, only: progress_type
    use file_calls, only: look_at, look_at_open, is_same
-   use text_file, only: text_file_type, open_text, write_line, check_text, close_text
+   use text_file, only: text_file_type, open_text, resume_text, write_line, check_text, &
+         close_text
    implicit none
    private
 
-   public :: log_type, open_log, continue_log, check_log, close_log, say, tell, note, remark, &
-         warn, write_status, has_line
+   public :: log_type, open_log, continue_log, check_log, end_status, close_log, say, tell, note, &
+         remark, warn, write_status, has_line
 
    !> Where lines go. Without files (a mere check), to the terminal alone.
    type :: log_type
@@ -83,17 +84,14 @@ contains
       call archive%pass('course/step', place(1))
       call archive%pass('course/increment', place(2))
       call read_status_lines(earlier//'.sta', place(1), place(2), .not. self%has_held, lines)
-      call open_text(self%lines, stem//'.log', stem == earlier, error)
+      call open_text(self%lines, stem//'.log', &
+            is_same(look_at(stem//'.log'), look_at(earlier//'.log')), error)
       if (allocated(error)) return
-      call open_text(self%status, stem//'.sta', .false., error)
+      call resume_text(self%status, stem//'.sta', lines, error)
       if (allocated(error)) return
       self%has_files = .true.
       self%name = stem//'.log'
-      if (len(lines) == 0) then
-         call write_head(self)
-      else
-         call write_line(self%status, lines(:len(lines) - 1))
-      end if
+      if (len(lines) == 0) call write_head(self)
    end subroutine continue_log
 
    !> What of the status lines is not written yet, and the warnings so far.
@@ -115,7 +113,7 @@ contains
 
    !> Brings all lines to the files; an error if one of them cannot be written.
    subroutine check_log(self, error)
-      type(log_type), intent(in) :: self
+      type(log_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error   !! status_file
 
       call check_text(self%lines, error)
@@ -214,7 +212,7 @@ contains
 
    subroutine write_held(self)
       type(log_type), intent(inout) :: self
-      character(len=82) :: line
+      character(len=line_length) :: line
 
       write (line, '(i6,i11,3es15.6,i12,i8)') self%held_counts(1:2), self%held_times, &
             self%held_counts(3:4)
@@ -223,13 +221,21 @@ contains
       self%has_held = .false.
    end subroutine write_held
 
-   !> Closes the files; an error if one of them could not be written to the end.
-   subroutine close_log(self, error)
+   !> After the last increment: its status line is written, all lines are brought to the files.
+   subroutine end_status(self, error)
       type(log_type), intent(inout) :: self
       type(error_type), allocatable, intent(out) :: error   !! status_file
 
       if (self%has_held) call write_held(self)
       call check_log(self, error)
+   end subroutine end_status
+
+   !> Closes the files; an error if one of them could not be written to the end.
+   subroutine close_log(self, error)
+      type(log_type), intent(inout) :: self
+      type(error_type), allocatable, intent(out) :: error   !! status_file
+
+      call end_status(self, error)
       call close_text(self%lines)
       call close_text(self%status)
       self%has_files = .false.

@@ -11,7 +11,7 @@ module simulation
    use result_file, only: close_results
    use command_line, only: command_type
    use publishing, only: start_publishing
-   use run_log, only: log_type, close_log, say, note
+   use run_log, only: log_type, end_status, close_log, say, note
    use stop_request, only: start_watch, remove_stop_files
    use progress, only: start_progress, end_progress
    use step_tally, only: count_up
@@ -102,12 +102,14 @@ contains
       type(json_type), intent(inout) :: report
       type(error_type), allocatable, intent(inout) :: error
       type(advice_list_type) :: lessons
-      type(error_type), allocatable :: close_error
+      type(error_type), allocatable :: close_error, ignored
 
       call keep_if_interrupted(simulation, course, output, error)
       call tell_how_to_go_on(command, error)
       call remove_stop_files(output%watch)
       call end_progress(output%log%progress, .not. allocated(error), place_of(simulation, course))
+      ! status lines come before the state that goes on behind them; what fails is told at the end
+      call end_status(output%log, ignored)
       call close_results(output%results, simulation%scene, close_error)
       call merge_errors(error, close_error, output%results%file)
       call report_summary(simulation, output%tally, output%preview%memory, output%log)

@@ -1,10 +1,13 @@
 !> The lines of a status file that an earlier run has written up to a place.
 module status_lines
+   use file_calls, only: is_regular, look_at
    implicit none
    private
 
-   public :: read_status_lines
+   public :: read_status_lines, line_length
 
+   !> Of an increment: a line that is shorter was cut off when the run was killed.
+   integer, parameter :: line_length = 82
    integer, parameter :: longest = 200
 
 contains
@@ -22,6 +25,8 @@ contains
 
       n = 0
       lines = ''
+      ! a pipe would wait for ever
+      if (.not. is_regular(look_at(path))) return
       open (newunit=unit, file=path, status='old', action='read', iostat=status)
       if (status /= 0) return
       lines = repeat(' ', 65536)
@@ -49,7 +54,7 @@ contains
       integer :: place(2), status
 
       wanted = line(1:1) == '#'
-      if (wanted) return
+      if (wanted .or. len_trim(line) /= line_length) return
       read (line, *, iostat=status) place
       if (status /= 0) return
       wanted = place(1) < step .or. (place(1) == step .and. place(2) < increment)

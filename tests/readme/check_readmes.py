@@ -7,6 +7,7 @@ checked, Python examples run. What cannot be run as it stands is listed in readm
 block that is none of these fails the test."""
 import os
 import re
+import shutil
 import subprocess
 import sys
 import time
@@ -195,9 +196,11 @@ def plain(line):
 
 
 def pages():
-    """All Markdown files of the checkout."""
-    listed = subprocess.run(['git', '-C', ROOT, 'ls-files', '*.md'], capture_output=True, text=True)
-    names = listed.stdout.split() or [path.relative_to(ROOT) for path in ROOT.glob('**/*.md')
+    """All Markdown files of the checkout; without git those where there are some."""
+    names = []
+    if shutil.which('git'):
+        names = subprocess.run(['git', '-C', ROOT, 'ls-files', '*.md'], capture_output=True, text=True).stdout.split()
+    names = names or [path.relative_to(ROOT) for path in ROOT.glob('**/*.md')
                                       if path.relative_to(ROOT).parts[0] in ('input', 'src', 'scripts', 'tests')
                                       or path.parent == ROOT]
     return sorted(map(Path, names))

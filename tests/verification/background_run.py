@@ -11,7 +11,7 @@ from pathlib import Path
 import h5py
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-PROGRAM = str(Path(sys.argv[1]).resolve())
+PROGRAM = str(Path(sys.argv[1]).resolve()) if len(sys.argv) > 1 else ''
 
 
 def default_signals():
@@ -37,18 +37,19 @@ def processor_time(process):
 
 
 class Job:
-    """A run of the program in the background."""
+    """A run of the program in the background. It has one thread, so that its processor time says how
+    far it is."""
 
     def __init__(self, deck, result, *options, prepare=default_signals):
         self.deck, self.result = Path(deck), Path(result)
         self.log = self.result.with_suffix('.log')
         self.part = Path(f'{result}.part')
-        self.status = None
+        self.status, self.heard = None, ''
         self.began = time.perf_counter()
         self.process = subprocess.Popen(
             [PROGRAM, 'run', str(deck), '-o', str(result), '--quiet', *options], text=True,
             stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=prepare,
-            env={**os.environ, 'OPENBLAS_NUM_THREADS': '1'})
+            env={**os.environ, 'OMP_NUM_THREADS': '1', 'OPENBLAS_NUM_THREADS': '1'})
 
     def until_it_computes(self, seconds=0.0):
         """Waits until the run has begun its results and taken so much time of the processor."""
@@ -63,6 +64,15 @@ class Job:
             self.process.send_signal(number)
         return self
 
+    def until_it_says(self, words):
+        """Waits until the run has said something on the terminal, or has ended."""
+        while words not in self.heard:
+            piece = os.read(self.process.stderr.fileno(), 4096)
+            if not piece:
+                break
+            self.heard += piece.decode()
+        return self
+
     def kill(self):
         """Ends the run at once, by SIGKILL."""
         self.process.kill()
@@ -74,6 +84,7 @@ class Job:
             return self
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         self.output, self.errors = self.process.communicate(timeout=300)
+        self.errors = self.heard + self.errors
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         self.processor = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
         self.seconds = time.perf_counter() - self.began

@@ -16,13 +16,14 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from background_run import processor_time
 from carom_case import INPUT, scratch_folder, whole
 
 PROGRAM = str(Path(sys.argv[1]).resolve()) if len(sys.argv) > 1 else ''
 SDOF = (INPUT / 'sdof/sdof.inp').read_text()
 CRASHED = re.compile(r'HDF5-DIAG|[Bb]acktrace|Segmentation|runtime error|signal|core dumped|'
                      r'corrupt|free\(\)')
-LIMIT = 60.0       # seconds: a run that takes longer hangs
+LIMIT = 240.0      # seconds: a run that takes longer hangs
 PUBLISHED = 5.3    # seconds of a run after which it has published for the first time
 
 
@@ -57,7 +58,7 @@ class Started:
         self.process = subprocess.Popen(
             [PROGRAM, *words], cwd=place.folder, stdin=subprocess.DEVNULL, text=True,
             errors='replace', preexec_fn=prepare,
-            env={**os.environ, 'OPENBLAS_NUM_THREADS': '1', **(env or {})},
+            env={**os.environ, 'OMP_NUM_THREADS': '1', 'OPENBLAS_NUM_THREADS': '1', **(env or {})},
             **streams)
         self.began = time.monotonic()
         self.status, self.text = None, ''
@@ -72,6 +73,11 @@ class Started:
                 return False
             time.sleep(0.005)
         return False
+
+    def until_it_computes(self, seconds):
+        """Waits until the run has taken so much time of the processor, or has ended."""
+        while self.process.poll() is None and processor_time(self.process.pid) < seconds:
+            time.sleep(0.005)
 
     def halt(self):
         """Holds the run for a while: its clock goes on."""

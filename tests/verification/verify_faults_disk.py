@@ -9,6 +9,7 @@ import time
 
 from carom_case import Checks, scratch_folder
 from fault_case import PUBLISHED, SDOF, Place, endless, limited, rows_of, said, saved
+from square_deck import rectangle
 
 FAILING = r"""
 #define _GNU_SOURCE
@@ -19,7 +20,8 @@ FAILING = r"""
 #include <string.h>
 #include <unistd.h>
 
-/* Whether this write to a file OUT.h5.part fails: all do from the one on that FAIL_AT counts to. */
+/* Whether this write to a file OUT.h5.part fails: all do from the one on that FAIL_AT counts to, or as
+   soon as there is the file FAIL_WITH. */
 static int fails(int descriptor)
 {
    static long left = -1;
@@ -28,9 +30,13 @@ static int fails(int descriptor)
    snprintf(link, sizeof link, "/proc/self/fd/%d", descriptor);
    length = readlink(link, path, sizeof path);
    if (length < 5 || memcmp(path + length - 5, ".part", 5) != 0) return 0;
-   if (left < 0) left = atol(getenv("FAIL_AT"));
-   if (left > 1) { left--; return 0; }
-   left = 1;
+   if (getenv("FAIL_WITH")) {
+      if (access(getenv("FAIL_WITH"), F_OK) != 0) return 0;
+   } else {
+      if (left < 0) left = atol(getenv("FAIL_AT"));
+      if (left > 1) { left--; return 0; }
+      left = 1;
+   }
    errno = EIO;
    return 1;
 }
@@ -69,6 +75,29 @@ def check_full_disk(checks):
     saved(checks, place, (1000, 1000, 1), 'compressed results, a limit', vtk=True)
 
 
+def check_full_disk_restarted(checks):
+    """A limit of the size of files, met by a run that goes on from a state: neither that state nor a
+    row of before is lost. A new state takes the place of that one, for which there is room."""
+    stopped = ['to go on: carom run deck.inp --restart deck.h5']
+    records = ['*NODE PRINT, NSET=left, FREQUENCY={}', 'U', '*ENERGY PRINT, FREQUENCY={}',
+               '*NODE FILE, FREQUENCY=1000000', 'U', '*RESTART, WRITE, FREQUENCY=100']
+    square = rectangle(40, 'CPE4', '*DYNAMIC, DIRECT, EXPLICIT', records).replace('0.01, 0.1', '0.01, 1000')
+    for every, status, words in ((1, 3, ['limit of the size of a file']), (10**6, 5, stopped)):
+        place = Place(square.replace('{}', str(every)))
+        what = f'a row in {every} increments'
+        said(checks, place.run('--time-limit', '0.3'), 5, stopped, f'a run that is stopped, {what}')
+        for more in (20000, 40000, 80000):
+            what = f'a row in {every} increments, room for {more} bytes beyond the margin'
+            rows = rows_of(place.folder / 'deck.h5')
+            size = (place.folder / 'deck.h5').stat().st_size
+            run = place.run('--restart', 'deck.h5', '--time-limit', '0.5' if status == 5 else '50',
+                            prepare=limited(size + 2**18 + more))
+            said(checks, run, status, words, f'restarted, {what}')
+            saved(checks, place, rows, f'restarted, {what}')
+            run = place.run('--restart', 'deck.h5', '--time-limit', '0.1')
+            said(checks, run, 5, stopped, f'restarted again without a limit, {what}')
+
+
 def mounted(folder, size):
     """Puts a small file system at a folder; the reason if that is not possible."""
     done = subprocess.run(['mount', '-t', 'tmpfs', '-o', f'size={size}', 'tmpfs', str(folder)],
@@ -100,11 +129,18 @@ def check_small_disk(checks):
                     'a disk that is full from the beginning: no results are left')
         for name in ('deck.h5', 'deck.log', 'deck.sta', 'second.log', 'second.sta', 'filler'):
             (folder / name).unlink(missing_ok=True)
-        run = place.start()
-        run.wait_for('deck.h5.part')
-        while (folder / 'deck.h5.part').stat().st_size < 1600000:      # twice that has no room
-            time.sleep(0.0005)
-        run.halt()
+        for every in (3, 30, 300):      # slower where the disk was full before the run was halted
+            (folder / 'deck.inp').write_text(endless(every))
+            run = place.start('--overwrite')
+            part = folder / 'deck.h5.part'
+            run.wait_for('deck.h5.part')
+            with contextlib.suppress(FileNotFoundError):
+                while part.stat().st_size < 1600000:      # twice that has no room
+                    time.sleep(0.0005)
+                run.halt()
+                if part.stat().st_size < 2400000:
+                    break
+            run.kill()
         run.until(PUBLISHED)
         run.go_on()
         said(checks, run.finish(), 3, ["'deck.h5'", 'No space left on device'],
@@ -155,9 +191,9 @@ def check_failing_disk(checks):
                               'message, and the results of before')
     # after a publication
     place = Place(endless(10))
-    run = place.start(env={'LD_PRELOAD': str(library), 'FAIL_AT': '2000'})
+    run = place.start(env={'LD_PRELOAD': str(library), 'FAIL_WITH': 'deck.h5'})
     run.wait_for('deck.h5.part')
-    time.sleep(0.3)
+    run.until_it_computes(0.3)
     run.halt()
     run.until(PUBLISHED)
     run.go_on()
@@ -170,6 +206,7 @@ def check_failing_disk(checks):
 def main():
     checks = Checks()
     check_full_disk(checks)
+    check_full_disk_restarted(checks)
     check_small_disk(checks)
     check_failing_disk(checks)
     checks.finish()

@@ -208,6 +208,30 @@ def check_decks(checks):
             ['deck.inp', 'twin.h5'], 'the results are a second name of the deck')
 
 
+def check_restarts(checks):
+    """--restart from what is no file, and beside a status file that is none: nothing waits for ever."""
+    place = Place()
+    os.mkfifo(place.folder / 'pipe.h5')
+    (place.folder / 'folder.h5').mkdir()
+    left = place.names()
+    for name in ('pipe.h5', 'folder.h5', '.', '/dev/zero'):
+        for options in ((), ('-o', 'new.h5')):
+            refused(checks, place.run('--restart', name, *options),
+                    [f"cannot read '{name}'", 'directory, pipe or device'], left,
+                    f"--restart {' '.join((name, *options))}")
+    place = Place(SDOF.replace('*END STEP', '*RESTART, WRITE\n*END STEP'))
+    said(checks, place.run(), 0, [], 'a run to go on with')
+    (place.folder / 'deck.sta').unlink()
+    os.mkfifo(place.folder / 'deck.sta')
+    longer = SDOF.replace('end = 20', 'end = 21').replace('*END STEP', '*RESTART, WRITE\n*END STEP')
+    (place.folder / 'deck.inp').write_text(longer)
+    said(checks, place.run('--restart', 'deck.h5', '-o', 'new.h5'), 0, [],
+         'a pipe in place of the earlier status file')
+    lines = (place.folder / 'new.sta').read_text().splitlines()
+    checks.true(lines[0].startswith('# step') and len(lines) == 2 + 25,
+                f'a pipe in place of the earlier status file: its {len(lines)} lines begin anew')
+
+
 def check_leftovers(checks):
     """What a crash has left beside the results does not disturb the next run."""
     place = Place()
@@ -219,6 +243,13 @@ def check_leftovers(checks):
     reference.run()
     checks.true(abs(len(place.read()) - len(reference.read())) < 100,
                 'leftovers of a crash: nothing of them is in the results')
+    for name in ('deck.h5.part', 'deck.h5.next'):
+        for make in (os.mkfifo, os.mkdir):
+            place = Place()
+            make(place.folder / name)
+            run = place.run()
+            refused(checks, run, [f"cannot write '{name}': it is a directory, pipe or device",
+                                  'remove it'], ['deck.inp', name], f'{make.__name__} {name}')
 
 
 def check_no_space(checks):
@@ -237,6 +268,7 @@ def main():
     check_existing(checks)
     check_logs(checks)
     check_decks(checks)
+    check_restarts(checks)
     check_leftovers(checks)
     check_no_space(checks)
     checks.finish()

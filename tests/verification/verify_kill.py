@@ -136,11 +136,15 @@ class Victim:
         self.checks.true(not complaints, f'{self.name}: VTK reads what is left {complaints[:3]}')
         self.counts['files read'] += 1
 
-    def finish(self, sentence):
-        """The last run goes on to the end: its results are those of the whole run."""
+    def finish(self, sentence, with_lines=False):
+        """The last run goes on to the end: its results are those of the whole run, as are the lines of
+        the status file, unless they could not be written."""
         job = self.begin().end()
         unlike = differences(self.full, self.part) if job.status == 0 else [job.errors]
         self.checks.true(not unlike, f'{self.name}, {sentence}: the same results {unlike[:3]}')
+        if with_lines:
+            lines = [path.with_suffix('.sta').read_text() for path in (self.part, self.full)]
+            self.checks.true(lines[0] == lines[1], f'{self.name}, {sentence}: the same status lines')
         self.clear()
 
     def chain(self, kills):
@@ -151,7 +155,7 @@ class Victim:
             self.kill(self.random.choice(AIMS))
         made = self.counts['kills'] - before
         self.counts['chains'] += made > 1
-        self.finish(f'killed {made} times')
+        self.finish(f'killed {made} times', with_lines=True)
         return made
 
 

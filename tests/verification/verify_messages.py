@@ -21,6 +21,8 @@ SDOF = INPUT / 'sdof/sdof.inp'
 FOLDER = scratch_folder()
 LIVES = re.compile(r'^ *(\d+) %  step (\d+)(?:/(\d+))?(.*)$')
 STEP = 0.04
+# One thread: the libraries then take few addresses
+ENVIRONMENT = {**os.environ, 'OMP_NUM_THREADS': '1', 'OPENBLAS_NUM_THREADS': '1'}
 
 # The mass at a wall, its heading harder to print, its output one line in a hundred increments
 OSCILLATOR = re.sub(r'(?s)\*NODE PRINT.*', '*NODE PRINT, FREQUENCY=100\nU\n*END STEP\n',
@@ -52,7 +54,7 @@ def write(name, text):
 def on_terminal(*words, cut=None, **variables):
     """Status and output of a run on a terminal; `cut` seconds after its first line of progress it
     gets a SIGINT."""
-    environment = {**os.environ, 'OPENBLAS_NUM_THREADS': '1', 'TERM': 'xterm', **variables}
+    environment = {**ENVIRONMENT, 'TERM': 'xterm', **variables}
     if 'COLUMNS' not in variables:
         environment.pop('COLUMNS', None)
     pid, terminal = pty.fork()
@@ -101,7 +103,7 @@ def seconds(text):
 def command(*words, cwd=FOLDER):
     """A finished process."""
     return subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True, cwd=cwd,
-                          timeout=300, env={**os.environ, 'OPENBLAS_NUM_THREADS': '1'})
+                          timeout=300, env=ENVIRONMENT)
 
 
 def run_json(checks, *words, status=0):
@@ -116,11 +118,11 @@ def run_json(checks, *words, status=0):
 
 
 def machine_speed():
-    """Increments a second of the oscillator here, by a run of its own."""
+    """Increments that the oscillator takes here in a second of the processor, by a run of its own: in a
+    second of the clock there may be fewer, so that runs last as long as wanted, or longer."""
     increments = 50000
-    command('run', write('speed', OSCILLATOR), '--define', f'end={increments*STEP}')
-    with h5py.File(FOLDER / 'speed.h5') as file:
-        return increments/file['cost/elapsed_seconds'][0]
+    done = command('run', write('speed', OSCILLATOR), '--json', '--define', end_after(increments))
+    return increments/json.loads(done.stdout)['seconds']['processor']
 
 
 def end_after(increments):
@@ -128,12 +130,21 @@ def end_after(increments):
     return f'end={int(increments)*STEP:.10g}'
 
 
+def drawn_enough(increments, wanted, *words, **variables):
+    """A run on a terminal: its increments, status and output. It is repeated with more increments where
+    it was over before what was wanted of its lines of progress could be drawn."""
+    for longer in (1, 3, 9, 27):
+        status, said = on_terminal(*words, '--overwrite', '--define', end_after(longer*increments), **variables)
+        if wanted(shown(said)[1]):
+            break
+    return int(longer*increments), status, said
+
+
 def check_progress(checks, speed):
     """Rate, time left, impacts; 100 % at the end; the log below it whole."""
     deck = write('long', OSCILLATOR)
     result = FOLDER / 'long.h5'
-    increments = int(2*speed)
-    status, said = on_terminal('run', deck, '-o', result, '--define', end_after(increments))
+    increments, status, said = drawn_enough(2*speed, lambda drawn: len(drawn) >= 3, 'run', deck, '-o', result)
     kept, drawn = shown(said)
     checks.true(status == 0, f'on a terminal: status {status}')
     checks.at_least(len(drawn), 3, 'lines of progress')
@@ -144,7 +155,8 @@ def check_progress(checks, speed):
     checks.true(percent == sorted(percent) and percent[-1] == 100, f'per cent grow: {percent}')
     for line in drawn[:-1]:
         done, rate = map(int, re.search(r'increment (\d+)  (\d+)/s', line).groups())
-        checks.true(0 <= seconds(line) - (increments - done)/rate*(1 - 1e-5) < 1 + 1e-3,
+        left, least, most = increments - done, rate - 0.5001, rate + 0.5001      # the rate is rounded
+        checks.true(left/most <= seconds(line) < left/least + 1,
                     f'the time left is that of the increments left at this rate: "{line}"')
     checks.true(all(re.search(r'  increment \d+  \S+/s  left .*  impacts \d+  touching \d+$', line)
                     for line in drawn[:-1]), f'all of a line: "{drawn[0]}"')
@@ -164,10 +176,11 @@ def check_progress(checks, speed):
 def check_terminals(checks, speed):
     """Narrow ones, ones that cannot rewrite a line, none."""
     deck = write('short', OSCILLATOR)
-    words = ('run', deck, '-o', FOLDER / 'short.h5', '--overwrite', '--define', end_after(speed))
-    _, said = on_terminal(*words, COLUMNS='40')
+    words = ('run', deck, '-o', FOLDER / 'short.h5')
+    increments, _, said = drawn_enough(speed, bool, *words, COLUMNS='40')
+    words = (*words, '--overwrite', '--define', end_after(increments))
     _, drawn = shown(said)
-    checks.true(0 < max(map(len, drawn)) < 40, f'40 columns: "{drawn[0]}"')
+    checks.true(0 < max(map(len, drawn), default=0) < 40, f'40 columns: "{drawn[:1]}"')
     _, said = on_terminal(*words, TERM='dumb')
     checks.true(not shown(said)[1] and '\x1b' not in said, 'TERM=dumb: no progress')
     _, said = on_terminal(*words, '--quiet')
@@ -205,10 +218,11 @@ def check_steps(checks, speed):
     """Two steps share the per cent by their increments; rehearsals are said to be such."""
     deck = write('steps', OSCILLATOR.replace('*STEP\n', STATIC + '*STEP\n', 1).replace(
         '*INITIAL CONDITIONS, TYPE=DISPLACEMENT\n1, 1, 1\n', ''))
-    _, said = on_terminal('run', deck, '--define', end_after(speed))
+    _, _, said = drawn_enough(speed, bool, 'run', deck)
     kept, drawn = shown(said)
     steps = [LIVES.match(line).groups()[1:3] for line in drawn]
-    checks.true(steps and set(steps) == {('2', '2')} and drawn[-1].startswith('100 %'),
+    # on a busy machine there may be time for a line in the first step
+    checks.true(steps and set(steps) <= {('1', '2'), ('2', '2')} and steps[-1] == ('2', '2') and drawn[-1].startswith('100 %'),
                 f'two steps: "{drawn[-1:]}"')
     log = (FOLDER / 'steps.log').read_text()
     rows = re.findall(r'^  (1 static|2 dynamic|all) +(\d+) +(\d+) +(\d+) +(\d+) ', log, re.M)
@@ -216,10 +230,14 @@ def check_steps(checks, speed):
                 == [int(n) for n in rows[2][1:]], f'the summary adds up the steps: {rows}')
     deck = write('tolerance', OSCILLATOR.replace('DIRECT', 'TOLERANCE=1e-4').replace(
         '*STEP\n', '*STEP, INC=1000000000\n'))
+
+    def rehearsing(drawn):
+        return any(re.search(r'rehearsing \(\d\), \d+ %  inc', line) for line in drawn)
+
     # a rehearsal of this tolerance takes some ten increments where the deck's size takes one
-    _, said = on_terminal('run', deck, '--define', end_after(0.1*speed))
+    _, _, said = drawn_enough(0.1*speed, rehearsing, 'run', deck)
     kept, drawn = shown(said)
-    checks.true(any(re.search(r'rehearsing \(\d\), \d+ %  inc', line) for line in drawn), f'TOLERANCE: "{drawn[:1]}"')
+    checks.true(rehearsing(drawn), f'TOLERANCE: "{drawn[:1]}"')
     checks.true('\r' not in ''.join(kept) and any(line.startswith('  rehearsal: ') for line in kept),
                 'TOLERANCE: what is said of rehearsals stands on lines of its own')
 
@@ -329,7 +347,7 @@ def check_no_memory(checks):
     for megabytes in range(120, 600, 20):
         limit = megabytes*1000000
         done = subprocess.run(words, capture_output=True, text=True, check=False, timeout=60,
-                              env={**os.environ, 'OPENBLAS_NUM_THREADS': '1'},
+                              env=ENVIRONMENT,
                               preexec_fn=lambda most=limit: resource.setrlimit(
                                   resource.RLIMIT_AS, (most, most)))
         if 'error: out of memory: ' in done.stderr:
