@@ -9,15 +9,15 @@
         f = result.contact("RIM-WALL").CF1
         last = result.node(5)["U1"][-1000:]   a column stays in the file: only these rows are read
         print(result.energy.kinetic.max(), result.cost.solves)
-        for event in result.events.filter(kind="impact"):
+        for event in result.events.filter(kind="impact"):    or result.events[0], the first
             print(event.time, event.node, event.impulse)
         for frame in result.frames:           see carom_frames.py
             print(frame.time, abs(frame.U).max())
         table = result.to_pandas("history")   needs pandas
 
-Names of sets and surfaces have no blanks in the file, and A to Z in upper case; `contact` takes them as
-the deck has them. All quantities are in the units of the deck. What is not there ends with a ScriptError that names the
-card which writes it.
+Names of sets and surfaces have no blanks in the file, and A to Z in upper case; `contact` takes them
+as the deck has them. All quantities are in the units of the deck. What is not there ends with a
+ScriptError that names the card which writes it.
 """
 
 import functools
