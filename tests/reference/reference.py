@@ -6,7 +6,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts"))
-from carom_deck import Card, squeezed, split_cards  # noqa: E402
+from carom_deck import Card, split_cards  # noqa: E402
+from carom_script import folded  # noqa: E402
 
 TEXT = ROOT / "input" / "README.md"
 START = "## Deck reference"
@@ -158,7 +159,7 @@ def identity(card):
     if card.keyword in PROCEDURES:
         return "procedure"
     given = next((card.get(name) for name in IDENTITIES if card.has(name)), "")
-    return card.keyword, squeezed(given)
+    return card.keyword, folded(given)
 
 
 def put(cards, unit, before):

@@ -18,7 +18,7 @@ from pathlib import Path
 
 import h5py
 
-from reference import Card, assemble, indented, read_entries, split_cards, squeezed
+from reference import Card, assemble, folded, indented, read_entries, split_cards
 
 LEVELS = {
     "model": "before the steps.", "step": "in a step.", "both": "before the steps or in a step.",
@@ -75,7 +75,7 @@ class Bench:
         """'step' for cards that stand in steps only."""
         if keyword == "RESTART":
             return "step"
-        return next(r.level for r in self.rules.values() if squeezed(r.name) == keyword)
+        return next(r.level for r in self.rules.values() if folded(r.name) == keyword)
 
     def deck(self, kind, example):
         """The lines of a deck with an example."""
@@ -97,7 +97,7 @@ def check_cards(bench):
         bench.report(f"*{name} has an entry, the reader does not know it")
     if len(bench.rules) < 50:
         bench.report("the table of the reader is cut short:", len(bench.rules), "cards")
-    titles = [squeezed(entry.title) for entry in bench.entries]
+    titles = [folded(entry.title) for entry in bench.entries]
     for title in {title for title in titles if titles.count(title) > 1}:
         bench.report(title, "has two entries")
     for entry in bench.entries:
@@ -151,7 +151,7 @@ def allowed_words(message):
 def spoil(deck, name, change):
     """A deck whose last card of a name is changed by a function."""
     cards = [Card(head, below) for head, below in split_cards(deck)]
-    place = max(i for i, card in enumerate(cards) if card.keyword == squeezed(name))
+    place = max(i for i, card in enumerate(cards) if card.keyword == folded(name))
     change(cards[place])
     return [line for card in cards for line in card.text_lines()]
 
@@ -265,7 +265,7 @@ def check_examples(bench):
             bench.report(f"the {kind} deck ends with status {done.returncode}:", done.stderr)
     for name, entry in bench.cards.items():
         for kind, example in entry.examples():
-            if squeezed(name) not in [Card(head).keyword for head, _ in split_cards(example)]:
+            if folded(name) not in [Card(head).keyword for head, _ in split_cards(example)]:
                 bench.report(f"*{name}: its example lacks it")
             done = bench.try_deck("run", bench.deck(kind, example))
             if done.returncode != 0:
