@@ -10,7 +10,6 @@ import shutil
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-import numpy as np
 from carom_deck import Deck, number_text, run_deck
 from carom_results import Result
 from carom_script import ScriptError

@@ -4,8 +4,8 @@ import sys
 import numpy as np
 
 from extreme_case import Case, Group, main
-from impact_decks import (FICTITIOUS, METHODS, TRANSFORMATIONS, PointDeck, kinds, one_mass, slug,
-                          smallest_gap, worst_balance)
+from impact_decks import (FICTITIOUS, METHODS, TRANSFORMATIONS, kinds, one_mass, slug, smallest_gap,
+                          worst_balance)
 
 # a power of two: places and times of a free flight at speed 1 have no round-off
 H = 1/16

@@ -6,7 +6,7 @@ touch; elements stay sound or are refused; weighted rows and second passes take 
 import numpy as np
 
 from carom_case import Checks, run_deck
-from plane_bodies import Deck, arch, block, frames, positions, ring
+from plane_bodies import Deck, block, frames, positions, ring
 
 
 def stacked(nodes=4, overlap=0.03, options='ADJUST', shift=0.0, on_top=5):

@@ -10,7 +10,6 @@ by more than 1e-11 of their size, the deck runs a third time with its nodes move
 coordinates, and the order may matter by GROWTH times what that does.
 """
 import re
-import sys
 import zlib
 
 import h5py

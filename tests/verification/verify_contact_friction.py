@@ -86,10 +86,8 @@ def check_point(checks):
 def check_ball(checks):
     """An elastic ball: its tangential impulse is at most mu times the normal one, equal to it while
     it slides; it spins as that impulse times its radius demands."""
-    mass = None
     for friction in (0.1, 0.2, 0.8):
         contact = ball.run('elastic.inp', mu=friction)
-        mass = contact.masses()
         total = contact.momentum()[0]
         gained = total[-1] - total[0]
         print(f'        ball, mu = {friction}: impulses {gained[0]:.6f} {gained[1]:.6f}, ratio '

@@ -8,7 +8,7 @@ import subprocess
 import time
 
 from carom_case import Checks, scratch_folder
-from fault_case import PUBLISHED, SDOF, Place, endless, limited, rows_of, said, saved
+from fault_case import PUBLISHED, Place, endless, limited, rows_of, said, saved
 from square_deck import rectangle
 
 FAILING = r"""

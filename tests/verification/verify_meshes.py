@@ -9,7 +9,7 @@ import subprocess
 import sys
 
 import numpy as np
-from carom_case import INPUT, ROOT, Checks, run_deck, scratch_folder
+from carom_case import INPUT, Checks, run_deck, scratch_folder
 from gmsh_text import QUADS, TRIANGLES, gmsh_text
 
 GMSH, FREECAD = INPUT / 'from_gmsh', INPUT / 'from_freecad'

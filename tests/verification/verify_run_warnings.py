@@ -3,7 +3,6 @@ rotations and strains too large for small displacements, contact that adds energ
 reactions at a driven node lack. Below the limits there is none."""
 import math
 import re
-import sys
 
 from carom_case import INPUT, Checks, run_deck
 

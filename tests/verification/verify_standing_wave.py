@@ -25,7 +25,7 @@ def error_of(kind, n, lumped):
     omega = np.pi * np.sqrt((PLANE_STRAIN if kind[2] == 'E' else PLANE_STRESS) / RHO)
     end = 0.3 * 2 * np.pi / omega
     mesh = Mesh(n, n, shape, place)
-    group = f'*ELEMENT GROUP, ELSET=solid, SCHEME=IMPLICIT, MASS=LUMPED\n' if lumped else ''
+    group = '*ELEMENT GROUP, ELSET=solid, SCHEME=IMPLICIT, MASS=LUMPED\n' if lumped else ''
     start = np.cos(np.pi * mesh.x[:, 0])
     cards = ''.join(f'{p + 1}, 1, {float(value)!r}\n' for p, value in enumerate(start))
     held = ''.join(f'{p + 1}, 2\n' for p in range(len(start)))
